@@ -28,8 +28,8 @@ impl Ascending {
 }
 
 /// Times at which the steps of a run end ([`Run::stop_at`](crate::run::Run::stop_at)) or its states are sampled
-/// ([`Run::sample_at`](crate::run::Run::sample_at)): given ones, evenly spaced ones, or so many in each decade. Arrays, vectors
-/// and slices of times \[s\] are times, too.
+/// ([`Run::sample_at`](crate::run::Run::sample_at)): given ones, evenly spaced ones, or so many in each decade.
+/// Arrays, vectors and slices of times \[s\] are times, too.
 ///
 /// ```
 /// use viscocontact::prelude::*;

@@ -91,8 +91,8 @@ impl Plane {
     }
 }
 
-/// Transforms of real planes, row-major, of one size. Coefficients: for each k2 from 0 to n2/2 all k1, the negative ones after the
-/// positive; the other k2 have the conjugate coefficients.
+/// Transforms of real planes, row-major, of one size. Coefficients: for each k2 from 0 to n2/2 all k1, the negative
+/// ones after the positive; the other k2 have the conjugate coefficients.
 #[derive(Clone)]
 pub(crate) struct RealPlane {
     along1: Lines,
@@ -141,7 +141,8 @@ impl RealPlane {
         self.along1.forward(coefficients);
     }
 
-    /// The inverse of [`RealPlane::forward`], times the number of values; of the first rows, and of the first values of each.
+    /// The inverse of [`RealPlane::forward`], times the number of values; of the first rows, and of the first values
+    /// of each.
     pub(crate) fn inverse<'a>(&mut self, coefficients: &mut [Complex64], rows: impl Iterator<Item = &'a mut [f64]>) {
         let n1 = self.along1.len();
         self.along1.inverse(coefficients);
@@ -153,8 +154,8 @@ impl RealPlane {
     }
 }
 
-/// The Fourier coefficients of a real field on `cells` points, in the order of a [`RealPlane`], normalised so that the sum of all waves is the
-/// field.
+/// The Fourier coefficients of a real field on `cells` points, in the order of a [`RealPlane`], normalised so that
+/// the sum of all waves is the field.
 pub(crate) fn fourier_coefficients(field: &[f64], cells: [usize; 2]) -> Vec<Complex64> {
     let mut plane = RealPlane::new(cells);
     let mut coefficients = vec![Complex64::ZERO; plane.coefficients()];
@@ -201,8 +202,8 @@ fn real_row(
     debug_assert!(done.is_ok());
 }
 
-/// Calls `job` with shares of the lines of `values` and the index of the first line of each share. There are as many shares
-/// as threads for this number of values. The result of `job` for a line must not depend on other lines.
+/// Calls `job` with shares of the lines of `values` and the index of the first line of each share. There are as many
+/// shares as threads for this number of values. The result of `job` for a line must not depend on other lines.
 pub(crate) fn for_each_line_share<T: Send>(values: &mut [T], length: usize, job: &(impl Fn(usize, &mut [T]) + Sync)) {
     let lines = (values.len() / length).div_ceil(lanes(values.len())).max(1);
     let shares = values.len().div_ceil(lines * length);

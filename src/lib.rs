@@ -82,15 +82,17 @@
 //! # Cost
 //!
 //! A convolution of N cells transforms the zero-padded grid and back, O(N log N). A step of the default solver
-//! takes <!-- figures convolutions per step -->3.1<!-- end --> convolution equivalents in the scene of the paper. Half or a quarter of the cells is computed where gap
-//! and load are even ([`contact::Settings::symmetry`]), and none beyond the reach of contact ([`contact::Settings::window`]).
+//! takes <!-- figures convolutions per step -->3.1<!-- end --> convolution equivalents in the scene of the paper. Half
+//! or a quarter of the cells is computed where gap and load are even ([`contact::Settings::symmetry`]), and none beyond
+//! the reach of contact ([`contact::Settings::window`]).
 //!
 //! The history costs no transform, and one field per relaxation time. A rheology without an exact exponential
 //! series is fitted by one at `build` ([`rheology::Rheology::series`]).
 //!
-//! Memory with one relaxation time: <!-- figures memory of the grid -->63 to 77<!-- end --> bytes per cell of the grid where a quarter is
-//! computed, <!-- figures memory -->158 to 186<!-- end --> where all are, <!-- figures memory of a line -->370<!-- end --> in a line contact; each further time adds 8 per
-//! computed cell. [`contact::Builder::memory`] returns the bytes beforehand.
+//! Memory with one relaxation time: <!-- figures memory of the grid -->63 to 77<!-- end --> bytes per cell of the
+//! grid where a quarter is computed, <!-- figures memory -->158 to 186<!-- end --> where all are,
+//! and <!-- figures memory of a line -->370<!-- end --> in a line contact; each further time adds 8 per computed cell.
+//! [`contact::Builder::memory`] returns the bytes beforehand.
 //!
 //! A step allocates nothing, except the first two of a run or under a tilting load, the first over the bodies or of several bodies, and steps of direct
 //! sums ([`contact::TimeRule::Rectangle`], [`contact::TimeRule::Backward`]), which keep a field of each step, along a path, with attraction, where a window

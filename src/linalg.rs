@@ -3,14 +3,16 @@
 /// Weight of entries off the diagonal in the search for a pivot: above the rounding of the smallest pivots.
 const OFF_DIAGONAL_WEIGHT: f64 = 0.999;
 
-/// Solves A x = b by Gaussian elimination with complete pivoting; returns x and the rank. Elimination ends when no remaining
-/// entry exceeds `dependent`: unknowns without a pivot are zero, and equations that depend on others are left out.
+/// Solves A x = b by Gaussian elimination with complete pivoting; returns x and the rank. Elimination ends when no
+/// remaining entry exceeds `dependent`: unknowns without a pivot are zero, and equations that depend on others are
+/// left out.
 pub(crate) fn solve<const N: usize>(mut a: [[f64; N]; N], mut b: [f64; N], dependent: f64) -> ([f64; N], usize) {
     let (mut open_rows, mut open_columns) = ([true; N], [true; N]);
     let (mut pivots, mut rank) = ([(0, 0); N], 0);
     while rank < N {
         let (mut largest, mut pivot) = (dependent, None);
-        // a symmetric positive semi-definite matrix has its largest entry on the diagonal, but for rounding, and keeps it there
+        // a symmetric positive semi-definite matrix has its largest entry on the diagonal, but for rounding, and
+        // keeps it there
         let diagonal = (0..N).map(|m| (m, m));
         let others = (0..N * N).map(|m| (m / N, m % N)).filter(|(row, column)| row != column);
         for (row, column) in diagonal.chain(others).filter(|&(row, column)| open_rows[row] && open_columns[column]) {
@@ -41,8 +43,8 @@ pub(crate) fn solve<const N: usize>(mut a: [[f64; N]; N], mut b: [f64; N], depen
     (x, rank)
 }
 
-/// Solves the normal equations Σ w f fᵀ x = `right` of a least-squares fit of functions f, scaled to a unit diagonal. The
-/// coefficient of a function is 0 if at most the fraction `dependent` of its square is independent of the others.
+/// Solves the normal equations Σ w f fᵀ x = `right` of a least-squares fit of functions f, scaled to a unit diagonal.
+/// The coefficient of a function is 0 if at most the fraction `dependent` of its square is independent of the others.
 pub(crate) fn solve_normal_equations<const N: usize>(
     gram: &[[f64; N]; N],
     right: [f64; N],

@@ -26,8 +26,8 @@ fn nearest(value: f64, decimals: usize) -> f64 {
     format!("{value:.decimals$e}").parse().unwrap_or(value)
 }
 
-/// A value out of range without the noise of its last digits, unless they are all that puts it out of the range: where the rounded
-/// value is a limit that `allowed` names, or where `allowed` names none.
+/// A value out of range without the noise of its last digits, unless they are all that puts it out of the range:
+/// where the rounded value is a limit that `allowed` names, or where `allowed` names none.
 pub(crate) fn without_noise(value: f64, allowed: &str) -> f64 {
     let short = nearest(value, TIME);
     let of_number = |c: char| c.is_ascii_digit() || matches!(c, '.' | '-' | 'e');

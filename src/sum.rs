@@ -3,9 +3,9 @@
 
 /// A struct of sums and maxima over cells, each with a name, that bands and ranks reduce.
 ///
-/// `named_sums!(Found { force: +, moments: modes, deepest: max })` declares `Found` with five numbers: a sum, three sums, and the
-/// greatest of values ≥ 0. `most` is the greatest of values of either sign. `joined` adds sums, and takes the greater of maxima.
-/// `numbers` and `of` convert to an array and back, for ranks.
+/// `named_sums!(Found { force: +, moments: modes, deepest: max })` declares `Found` with five numbers: a sum, three
+/// sums, and the greatest of values ≥ 0. `most` is the greatest of values of either sign. `joined` adds sums, and
+/// takes the greater of maxima. `numbers` and `of` convert to an array and back, for ranks.
 macro_rules! named_sums {
     ($(#[$of:meta])* $name:ident { $($(#[$doc:meta])* $field:ident: $kind:tt,)* }) => {
         $(#[$of])*

@@ -11,8 +11,8 @@ impl<T> fmt::Debug for Counted<'_, T> {
     }
 }
 
-/// Declares a struct whose fields are read by methods named as they are, with their documentation, and changed by methods
-/// `with_field(self, field) -> Self` where one is named. Such types may get more fields.
+/// Declares a struct whose fields are read by methods named as they are, with their documentation, and changed by
+/// methods `with_field(self, field) -> Self` where one is named. Such types may get more fields.
 macro_rules! value {
     ($(#[$about:meta])* pub struct $type:ident { $($(#[$doc:meta])* $field:ident: $value:ty $(, $with:ident)?;)* }) => {
         $(#[$about])*
@@ -64,8 +64,8 @@ macro_rules! forward {
     };
 }
 
-/// Implements `Clone` field by field. Unlike that of a derived `Clone`, `clone_from` keeps the memory of the fields: a snapshot
-/// is taken and restored without an allocation.
+/// Implements `Clone` field by field. Unlike that of a derived `Clone`, `clone_from` keeps the memory of the fields:
+/// a snapshot is taken and restored without an allocation.
 macro_rules! clone_by_fields {
     ($type:ident { $($field:ident),* $(,)? }) => {
         impl Clone for $type {

@@ -1,9 +1,9 @@
 use crate::adhesion::{Attraction, Scales};
 use crate::error::{Result, within};
 
-/// The constant attraction of Dugdale and Maugis, s = w/ρ up to the gap ρ, with an end of stated width: over the gaps ρ (1 ± b/2) it falls
-/// linearly to zero. At a sharp end single cells would jump, each at a load of its own, and pull harder than the law: the zone in which the
-/// traction falls, of the length b E* ρ²/w, must have 4 cells or more.
+/// The constant attraction of Dugdale and Maugis, s = w/ρ up to the gap ρ, with an end of stated width: over the gaps
+/// ρ (1 ± b/2) it falls linearly to zero. At a sharp end single cells would jump, each at a load of its own, and pull
+/// harder than the law: the zone in which the traction falls, of the length b E* ρ²/w, must have 4 cells or more.
 ///
 /// ```
 /// use viscocontact::adhesion::{Attraction, Dugdale};
@@ -31,7 +31,8 @@ impl Dugdale {
         Ok(Dugdale { scales: Scales::new(work, range)?, width: WIDTH })
     }
 
-    /// A law of the `work` of separation w \[J/m²\] and the `greatest` traction s(0) \[Pa\], with an end of width b = 1/2 of the range.
+    /// A law of the `work` of separation w \[J/m²\] and the `greatest` traction s(0) \[Pa\], with an end of width
+    /// b = 1/2 of the range.
     ///
     /// # Errors
     /// As [`Dugdale::new`].
@@ -39,7 +40,8 @@ impl Dugdale {
         Ok(Dugdale { scales: Scales::of_traction(work, greatest)?, width: WIDTH })
     }
 
-    /// Another width b of its end, over the range: at b = 2 it is [`LinearSoftening`](crate::adhesion::LinearSoftening).
+    /// Another width b of its end, over the range: at b = 2 it is
+    /// [`LinearSoftening`](crate::adhesion::LinearSoftening).
     ///
     /// # Errors
     /// If b is not in \[0.01, 2\].

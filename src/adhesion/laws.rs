@@ -1,5 +1,5 @@
-//! The laws that every [`Attraction`] obeys, to test implementations of the trait. [`all`] checks every law, at gaps from zero to a
-//! million ranges.
+//! The laws that every [`Attraction`] obeys, to test implementations of the trait. [`all`] checks every law, at gaps
+//! from zero to a million ranges.
 
 use crate::adhesion::Attraction;
 pub use crate::error::{Location, Verdict, Violation};
@@ -10,10 +10,12 @@ const PER_DECADE: i32 = 40;
 const DECADES: i32 = 9;
 /// Points of a quadrature between two gaps.
 const POINTS: usize = 12;
-/// Difference of an integral from a difference of energies, over the work of separation: of a law that is tested, and of one that a contact takes.
+/// Difference of an integral from a difference of energies, over the work of separation: of a law that is tested, and
+/// of one that a contact takes.
 const SAME: f64 = 1e-7;
 const USABLE: f64 = 1e-3;
-/// Halvings of an interval around a corner of the law, and halvings of every interval: by itself a corner may leave the halves as the whole.
+/// Halvings of an interval around a corner of the law, and halvings of every interval: by itself a corner may leave
+/// the halves as the whole.
 const HALVINGS: usize = 24;
 const LEAST_HALVINGS: usize = 2;
 
@@ -96,7 +98,8 @@ pub fn attracts_less_with_the_gap(attraction: &dyn Attraction) -> Verdict {
     Ok(())
 }
 
-/// The energy is the integral of the traction from the gap to infinity: its differences are integrals, and it vanishes far away.
+/// The energy is the integral of the traction from the gap to infinity: its differences are integrals, and it
+/// vanishes far away.
 ///
 /// # Errors
 /// The first violation.

@@ -1,7 +1,7 @@
 //! Attraction between surfaces that are near each other.
 //!
-//! An [`Attraction`] pulls cells of gap h together with the traction s(h) ≥ 0, beside the hard wall at h = 0. It never grows with
-//! the gap, and the work of separation of a unit of area is w = ∫₀^∞ s dh.
+//! An [`Attraction`] pulls cells of gap h together with the traction s(h) ≥ 0, beside the hard wall at h = 0. It
+//! never grows with the gap, and the work of separation of a unit of area is w = ∫₀^∞ s dh.
 //!
 //! | law | s(h), with ρ = w/s(0) |
 //! |---|---|
@@ -10,9 +10,9 @@
 //! | [`LinearSoftening`] | (w/ρ) (1 − h/2ρ) up to h = 2ρ |
 //! | [`Dugdale`] | w/ρ up to h = ρ, with a linear end of stated width |
 //!
-//! Every law is given by w and either ρ ([`Attraction::range`]) or the greatest traction s(0). Laws of the same w and ρ differ little in
-//! the pull-off force. A Lennard-Jones law with its repulsive branch is not offered: in place of the wall it would
-//! put a stiff spring.
+//! Every law is given by w and either ρ ([`Attraction::range`]) or the greatest traction s(0). Laws of the same w and
+//! ρ differ little in the pull-off force. A Lennard-Jones law with its repulsive branch is not offered: in place of
+//! the wall it would put a stiff spring.
 
 mod dugdale;
 mod exponential;
@@ -53,7 +53,8 @@ use crate::error::{Result, UserError, finite, length, positive};
 /// # Ok::<(), String>(())
 /// ```
 pub trait Attraction: Debug + Send + Sync {
-    /// The traction s(h) that pulls a cell of `gap` h ≥ 0 \[m\] towards the other body, ≥ 0 and never growing with h \[Pa\].
+    /// The traction s(h) that pulls a cell of `gap` h ≥ 0 \[m\] towards the other body, ≥ 0 and never growing with h
+    /// \[Pa\].
     fn traction(&self, gap: f64) -> f64;
 
     /// The work ∫ₕ^∞ s dh that opens the `gap` from h to infinity \[J/m²\].
@@ -69,14 +70,16 @@ pub trait Attraction: Debug + Send + Sync {
         self.energy(0.0) / self.traction(0.0)
     }
 
-    /// Why the last value was none, of a law that can fail: such a value is NaN, and this error comes out of the call that needed it.
+    /// Why the last value was none, of a law that can fail: such a value is NaN, and this error comes out of the call
+    /// that needed it.
     fn failure(&self) -> Option<UserError> {
         None
     }
 }
 
-/// The slope at which an attraction softens \[Pa/m\]: the greater of w/ρ², its slope on average, and of the steepest slope −s′ up to the gap
-/// 4ρ. On a body of contact modulus E* the attraction acts over a zone of the length E* over this slope.
+/// The slope at which an attraction softens \[Pa/m\]: the greater of w/ρ², its slope on average, and of the steepest
+/// slope −s′ up to the gap 4ρ. On a body of contact modulus E* the attraction acts over a zone of the length E* over
+/// this slope.
 pub(crate) fn softening(law: &dyn Attraction) -> f64 {
     /// Differences for each range: 5 over the narrowest end of Dugdale's law.
     const PER_RANGE: u32 = 500;
@@ -133,8 +136,9 @@ impl Scales {
     }
 }
 
-/// Tabor's number μ = (R w²/(E*² ρ³))^⅓ of a sphere of `radius` R \[m\] on a body of contact `modulus` E* \[Pa\]: where it is great, the
-/// contact separates as [`Jkr`](crate::analytic::Jkr) has it, where it is small, as [`Dmt`](crate::analytic::Dmt).
+/// Tabor's number μ = (R w²/(E*² ρ³))^⅓ of a sphere of `radius` R \[m\] on a body of contact `modulus` E* \[Pa\]:
+/// where it is great, the contact separates as [`Jkr`](crate::analytic::Jkr) has it, where it is small, as
+/// [`Dmt`](crate::analytic::Dmt).
 ///
 /// ```
 /// use viscocontact::adhesion::{ExponentialAttraction, tabor_number};

@@ -1,8 +1,8 @@
 use crate::adhesion::{Attraction, Scales};
 use crate::error::Result;
 
-/// The attraction of half-spaces whose molecules attract each other with the sixth power of their distance: s = (2w/h₀)(1 + h/h₀)^(−3),
-/// with h₀ = 2ρ the distance of the surfaces in contact.
+/// The attraction of half-spaces whose molecules attract each other with the sixth power of their distance:
+/// s = (2w/h₀)(1 + h/h₀)^(−3), with h₀ = 2ρ the distance of the surfaces in contact.
 ///
 /// ```
 /// use viscocontact::adhesion::{Attraction, VanDerWaals};

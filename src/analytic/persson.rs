@@ -5,14 +5,17 @@ use crate::error::{Result, finite, positive, within};
 use crate::fft::{fourier_coefficients, wave_numbers};
 use crate::geometry::{Geometry, evaluate};
 
-/// Friction of a rubber on a rough surface by hysteresis, and its contact area, by Persson's theory (B. N. J. Persson, J. Chem. Phys. 115, 2001,
-/// eqs. 24 to 28), summed over the waves h_q of a surface instead of integrated over an isotropic spectrum:
+/// Friction of a rubber on a rough surface by hysteresis, and its contact area, by Persson's theory (B. N. J.
+/// Persson, J. Chem. Phys. 115, 2001, eqs. 24 to 28), summed over the waves h_q of a surface instead of integrated
+/// over an isotropic spectrum:
 ///
-/// μ = Σ |h_q|² |q| (q·v/v) S P Im E*(q·v)/2p₀, with P(q) = erf(1/(2√G)), G(q) = Σ |h_q′|² q′² |E*(q′·v)|²/8p₀² over |q′| < |q|, and S = γ + (1 − γ) P².
+/// μ = Σ |h_q|² |q| (q·v/v) S P Im E*(q·v)/2p₀, with P(q) = erf(1/(2√G)), G(q) = Σ |h_q′|² q′² |E*(q′·v)|²/8p₀² over
+/// |q′| < |q|, and S = γ + (1 − γ) P².
 ///
-/// It assumes that the area in contact shrinks with every finer wave as by a diffusion of the pressure, exactly so in full contact; that what is in contact
-/// deforms as in full contact, but for the factor S, of which γ ≈ ½ is usual and 1 the theory without it; and that waves have no correlation. So it is an estimate: contact
-/// problems of the same surface differ from it by tens of percent, and by more at small contact areas. In full contact it is exact.
+/// It assumes that the area in contact shrinks with every finer wave as by a diffusion of the pressure, exactly so in
+/// full contact; that what is in contact deforms as in full contact, but for the factor S, of which γ ≈ ½ is usual
+/// and 1 the theory without it; and that waves have no correlation. So it is an estimate: contact problems of the
+/// same surface differ from it by tens of percent, and by more at small contact areas. In full contact it is exact.
 ///
 /// ```
 /// use viscocontact::analytic::PerssonFriction;
@@ -41,11 +44,13 @@ pub struct PerssonFriction {
 const SAME: f64 = 1e-9;
 
 impl PerssonFriction {
-    /// Of a periodic `surface`, of which the grid is one period, on a body of the complex contact `modulus` E* \[Pa\] at frequencies ≥ 0 \[rad/s\]
-    /// (4 G* if incompressible), under the mean `pressure` p₀ \[Pa\], with `velocity` \[m/s\] and the number γ.
+    /// Of a periodic `surface`, of which the grid is one period, on a body of the complex contact `modulus` E* \[Pa\]
+    /// at frequencies ≥ 0 \[rad/s\] (4 G* if incompressible), under the mean `pressure` p₀ \[Pa\], with `velocity`
+    /// \[m/s\] and the number γ.
     ///
     /// # Errors
-    /// If the surface has no height somewhere, the pressure is not finite and positive, γ outside \[0, 1\], or velocity or friction not finite.
+    /// If the surface has no height somewhere, the pressure is not finite and positive, γ outside \[0, 1\], or
+    /// velocity or friction not finite.
     pub fn new(
         grid: &Grid,
         surface: &dyn Geometry,

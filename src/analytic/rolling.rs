@@ -3,11 +3,11 @@ use std::f64::consts::PI;
 use crate::error::{Error, Result, finite, positive};
 use crate::quadrature::{GaussLegendre, bisect};
 
-/// A cylinder that rolls or slides steadily, without friction of its surface, on a body with one retardation time: C(t) = C₀ + C₁ (1 − e^(−t/τ)), in line
-/// contact (S. C. Hunter, J. Appl. Mech. 28, 1961).
+/// A cylinder that rolls or slides steadily, without friction of its surface, on a body with one retardation time:
+/// C(t) = C₀ + C₁ (1 − e^(−t/τ)), in line contact (S. C. Hunter, J. Appl. Mech. 28, 1961).
 ///
-/// With the reach l = vτ and C∞ = C₀ + C₁, q = C∞ p − l C₀ p′ is Hertz's pressure with a tilt on the contact \[c − w, c + w\]. With
-/// β = C∞/(l C₀), k = K₁(w/l)/K₀(w/l) and i = I₁(βw)/I₀(βw), modified Bessel functions,
+/// With the reach l = vτ and C∞ = C₀ + C₁, q = C∞ p − l C₀ p′ is Hertz's pressure with a tilt on the contact \[c − w,
+/// c + w\]. With β = C∞/(l C₀), k = K₁(w/l)/K₀(w/l) and i = I₁(βw)/I₀(βw), modified Bessel functions,
 ///
 /// c = l (C₁/C∞) i/(i + k), F = π/(4 R C∞) (w² + 2cwk), μ = (c + M/F)/R, M = ((l − c) πw²/4R − l C₀ F)/C∞.
 ///
@@ -38,8 +38,8 @@ pub struct RollingCylinder {
 const HALVINGS: usize = 80;
 
 impl RollingCylinder {
-    /// A cylinder of `radius` R \[m\] on a body with the contact compliances C₀ and C₁ \[1/Pa\], under `force` F on a unit of its length \[N/m\], with the `reach`
-    /// l \[m\]: velocity times retardation time.
+    /// A cylinder of `radius` R \[m\] on a body with the contact compliances C₀ and C₁ \[1/Pa\], under `force` F on a
+    /// unit of its length \[N/m\], with the `reach` l \[m\]: velocity times retardation time.
     ///
     /// # Errors
     /// If a number is not finite and positive, or there is no such contact in `f64`.

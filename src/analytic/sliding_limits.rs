@@ -5,17 +5,20 @@ use crate::error::{Result, finite, positive, within};
 use crate::numeric::EULER;
 use crate::rheology::Material;
 
-/// Friction of an indenter without an edge in steady motion, with no friction of its surface, over any creeping body, where the motion is slow or fast against
-/// every term of the creep. Derived in docs/validation.md; with one retardation time the limits of the cylinder agree with S. C. Hunter's closed form
+/// Friction of an indenter without an edge in steady motion, with no friction of its surface, over any creeping body,
+/// where the motion is slow or fast against every term of the creep. Derived in docs/validation.md; with one
+/// retardation time the limits of the cylinder agree with S. C. Hunter's closed form
 /// ([`RollingCylinder`](super::RollingCylinder)).
 ///
 /// With w = K p, C(t) = C₀ + Σ C_k (1 − e^(−t/τ_k)) of the contact and C∞ = C₀ + Σ C_k:
 ///
-/// * Slow, v τ ≪ a: u = C∞ w + v Σ C_k τ_k w′, and w″ = −1/(C∞ R₁) in contact, so that μ = v Σ C_k τ_k/(C∞ R₁). The relative remainder is of the order v τ/a.
-/// * Fast, v τ ≫ a, an ellipsoid: u′ = C₀ w′ − C′(0) w/v with the pressure of Hertz for C₀, of which the mean of C₀ w is ω − (a₁²/R₁ + a₂²/R₂)/10:
-///   μ = C′(0)/(C₀ v) times this, C′(0) = Σ C_k/τ_k. Of a sphere 4a²/5R is left. The remainder is of the order a/(v τ) ln(v τ/a).
-/// * Fast, a cylinder: w falls with a logarithm, and the reach v τ remains in it: μ = (a²/2R) Σ C_k/(C₀ v τ_k) (ln(2 v τ_k/a) − γ + 1/4), γ of Euler. The
-///   remainder is of the order (a/v τ)² ln(v τ/a).
+/// * Slow, v τ ≪ a: u = C∞ w + v Σ C_k τ_k w′, and w″ = −1/(C∞ R₁) in contact, so that μ = v Σ C_k τ_k/(C∞ R₁). The
+///   relative remainder is of the order v τ/a.
+/// * Fast, v τ ≫ a, an ellipsoid: u′ = C₀ w′ − C′(0) w/v with the pressure of Hertz for C₀, of which the mean of C₀ w
+///   is ω − (a₁²/R₁ + a₂²/R₂)/10: μ = C′(0)/(C₀ v) times this, C′(0) = Σ C_k/τ_k. Of a sphere 4a²/5R is left. The
+///   remainder is of the order a/(v τ) ln(v τ/a).
+/// * Fast, a cylinder: w falls with a logarithm, and the reach v τ remains in it: μ = (a²/2R) Σ C_k/(C₀ v τ_k) (ln(2
+///   v τ_k/a) − γ + 1/4), γ of Euler. The remainder is of the order (a/v τ)² ln(v τ/a).
 ///
 /// ```
 /// use viscocontact::analytic::SlidingLimits;
@@ -37,11 +40,12 @@ pub struct SlidingLimits {
 }
 
 impl SlidingLimits {
-    /// An ellipsoid, or a sphere, of these `radii` of curvature along the motion and across it \[m\], under a `force` \[N\].
+    /// An ellipsoid, or a sphere, of these `radii` of curvature along the motion and across it \[m\], under a `force`
+    /// \[N\].
     ///
     /// # Errors
-    /// If a radius or the force is not finite and positive, the ratio of the radii beyond 1e12, or the material has no series, or flows: its slow motion has no
-    /// relaxed contact.
+    /// If a radius or the force is not finite and positive, the ratio of the radii beyond 1e12, or the material has
+    /// no series, or flows: its slow motion has no relaxed contact.
     pub fn ellipsoid(radii: [f64; 2], material: &Material, force: f64) -> Result<SlidingLimits> {
         positive("force", force)?;
         let creep = Creep::of(material)?;
@@ -97,7 +101,8 @@ impl Creep {
         Ok(Creep { glassy, relaxed, moment: sum(|c, time| c * time), rate, mean_log })
     }
 
-    /// The limits for a radius along the motion, and the mean of C₀ w \[m\] with what it grows by for each e-fold of the velocity.
+    /// The limits for a radius along the motion, and the mean of C₀ w \[m\] with what it grows by for each e-fold of
+    /// the velocity.
     fn limits(&self, radius: f64, (mean, per_log): (f64, f64)) -> Result<SlidingLimits> {
         let per_mean = self.rate / self.glassy;
         Ok(SlidingLimits {
@@ -114,7 +119,8 @@ mod tests {
     use crate::analytic::RollingCylinder;
     use crate::rheology::GeneralizedKelvin;
 
-    /// Hunter's closed form of one retardation time: the first order at the slow end, the second with a logarithm at the fast one.
+    /// Hunter's closed form of one retardation time: the first order at the slow end, the second with a logarithm at
+    /// the fast one.
     #[test]
     fn limits_of_a_cylinder_are_hunters() {
         let (radius, c0, c1, force) = (1.0, 0.25e-6, 2.25e-6, 5.0e3);

@@ -27,7 +27,8 @@ impl Computation {
         Computation { trial, window, state, attracted: None }
     }
 
-    /// A copy on another region, for a step under `indenter`. This state keeps its values and loses the start of its last step.
+    /// A copy on another region, for a step under `indenter`. This state keeps its values and loses the start of its
+    /// last step.
     ///
     /// # Errors
     /// If there is no memory for both.

@@ -1,8 +1,8 @@
 //! The stepper: a contact that is advanced in time, step by step or along a load history.
 //!
-//! A contact has five owners. The scene never changes. The indenter is replaced as a whole when it moves. The state is changed
-//! by accepted steps. The window, which follows from the other three, computes on the region of the state. The trial holds the
-//! step being computed. State, window and trial form a computation.
+//! A contact has five owners. The scene never changes. The indenter is replaced as a whole when it moves. The state
+//! is changed by accepted steps. The window, which follows from the other three, computes on the region of the state.
+//! The trial holds the step being computed. State, window and trial form a computation.
 //!
 //! | question | folder |
 //! |---|---|

@@ -52,7 +52,8 @@ pub struct ViscoelasticContact {
     pub(crate) missed: Missed,
     /// Fields on the whole grid, for users to read.
     pub(crate) view: View,
-    /// Progress of a run that was saved and resumed, for the next run to continue. Its type belongs to runs, which use contacts.
+    /// Progress of a run that was saved and resumed, for the next run to continue. Its type belongs to runs, which
+    /// use contacts.
     pub(crate) saved_run: Option<Arc<dyn Any + Send + Sync>>,
 }
 
@@ -75,8 +76,8 @@ impl ViscoelasticContact {
     }
 }
 
-/// A contact in space ([`ViscoelasticContact`]) or on elastic states ([`StatesContact`](crate::states::StatesContact)): what
-/// tables, charts and equations of motion need of either.
+/// A contact in space ([`ViscoelasticContact`]) or on elastic states
+/// ([`StatesContact`](crate::states::StatesContact)): what tables, charts and equations of motion need of either.
 ///
 /// ```
 /// use viscocontact::contact::Contact;
@@ -122,7 +123,8 @@ pub trait Contact: Clone {
     /// Contact area \[m²\].
     fn contact_area(&self) -> f64;
 
-    /// Whether the bodies are apart. [`StepReport::contact_cells`] does not tell: on states without cells it is always 0.
+    /// Whether the bodies are apart. [`StepReport::contact_cells`] does not tell: on states without cells it is
+    /// always 0.
     fn is_separated(&self) -> bool;
 
     /// Force over contact area \[Pa\]; 0 without contact.

@@ -40,16 +40,16 @@ impl ElasticBuilder {
         self.another_body(geometry)
     }
 
-    /// A further rigid body on the same elastic body, with a force, approach and tilt of its own. Gaps are measured from the
-    /// same plane; a cell can be touched by one body only, the one whose gap is lowest there.
+    /// A further rigid body on the same elastic body, with a force, approach and tilt of its own. Gaps are measured
+    /// from the same plane; a cell can be touched by one body only, the one whose gap is lowest there.
     pub fn another_body(mut self, geometry: &dyn Geometry) -> ElasticBuilder {
         self.gaps.push(evaluate(geometry, &self.grid));
         self.waves.extend(geometry.waves());
         self
     }
 
-    /// The contact modulus E* \[Pa\], required: E/(1 − ν²) of an elastic body under a rigid one, 1/E* = Σ (1 − ν²)/E of two.
-    /// That of a layer is the one of a half-space of its material.
+    /// The contact modulus E* \[Pa\], required: E/(1 − ν²) of an elastic body under a rigid one, 1/E* = Σ (1 − ν²)/E
+    /// of two. That of a layer is the one of a half-space of its material.
     pub fn modulus(self, modulus: f64) -> ElasticBuilder {
         ElasticBuilder { modulus: Some(modulus), ..self }
     }
@@ -65,10 +65,10 @@ impl ElasticBuilder {
         ElasticBuilder { settings, ..self }
     }
 
-    /// The bytes that the contact will take; with [`Settings::window`] with the largest window. No field is allocated to find
-    /// out. About 117 for each computed cell: pressure and its potential at the last equilibrium and in the trial 32, gap,
-    /// marks and displacement 17, solver and preconditioner 36, kernel and work space 25, and 16 a cell of the whole grid
-    /// where not all are computed.
+    /// The bytes that the contact will take; with [`Settings::window`] with the largest window. No field is allocated
+    /// to find out. About 117 for each computed cell: pressure and its potential at the last equilibrium and in the
+    /// trial 32, gap, marks and displacement 17, solver and preconditioner 36, kernel and work space 25, and 16 a
+    /// cell of the whole grid where not all are computed.
     ///
     /// # Errors
     /// As [`ElasticBuilder::build`], except for invalid gaps and memory.
@@ -83,9 +83,10 @@ impl ElasticBuilder {
     /// Makes the contact, without load.
     ///
     /// # Errors
-    /// If geometry or modulus is missing, the modulus is not positive, a gap is NaN or −∞ or none is finite, a setting is out of
-    /// range, the kernel was made for another grid or cannot be made for its cells ([`InfluenceKernel::half_space`]), there is
-    /// not enough memory ([`Error::OutOfMemory`]), or more than 2³² − 1 cells would be computed.
+    /// If geometry or modulus is missing, the modulus is not positive, a gap is NaN or −∞ or none is finite, a
+    /// setting is out of range, the kernel was made for another grid or cannot be made for its cells
+    /// ([`InfluenceKernel::half_space`]), there is not enough memory ([`Error::OutOfMemory`]), or more than 2³² − 1
+    /// cells would be computed.
     pub fn build(self) -> Result<ElasticContact> {
         let (ground, compliance) = self.ground()?;
         let gaps = self.gaps.into_iter().collect::<Result<Vec<_>>>()?;

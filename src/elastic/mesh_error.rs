@@ -10,20 +10,21 @@ use crate::observe::grid_convergence::{OfMesh, SINGULAR, SMOOTH};
 use crate::{Grid, sum};
 
 impl Fields<'_> {
-    /// The error due to the mesh, measured: the elastic contact under the same load and over the same surface is solved on half the cells along each
-    /// side and, where the contact is eight cells across there, on a quarter. The surface is what the displacement u leaves beside c K p, with the
-    /// compliance c of least squares: nothing on an elastic body, what its history left on one that creeps. The differences
-    /// between the meshes give the error, with their observed order, or else the first, by the grid convergence index
-    /// (P. J. Roache, J. Fluids Eng. 116, 1994). Costs a convolution, and a third of a step.
+    /// The error due to the mesh, measured: the elastic contact under the same load and over the same surface is
+    /// solved on half the cells along each side and, where the contact is eight cells across there, on a quarter. The
+    /// surface is what the displacement u leaves beside c K p, with the compliance c of least squares: nothing on an
+    /// elastic body, what its history left on one that creeps. The differences between the meshes give the error,
+    /// with their observed order, or else the first, by the grid convergence index (P. J. Roache, J. Fluids Eng. 116,
+    /// 1994). Costs a convolution, and a third of a step.
     ///
-    /// Over true errors of random scenes of all shapes, elastic and creeping, those told are mostly 0.7 to 12 times as large
-    /// (docs/accuracy.md). What no mesh of the three resolves is not seen, as waves shorter than cells. Errors of a whole
-    /// run are measured by a study (feature `study`).
+    /// Over true errors of random scenes of all shapes, elastic and creeping, those told are mostly 0.7 to 12 times
+    /// as large (docs/accuracy.md). What no mesh of the three resolves is not seen, as waves shorter than cells.
+    /// Errors of a whole run are measured by a study (feature `study`).
     ///
     /// Of several bodies the error of the approach is that of the body for which it is greatest.
     ///
-    /// `None` without contact, for contacts of a body that are less than about six cells across, where half the cells do not divide a period, and for
-    /// coefficients of a user, which belong to cells.
+    /// `None` without contact, for contacts of a body that are less than about six cells across, where half the cells
+    /// do not divide a period, and for coefficients of a user, which belong to cells.
     ///
     /// ```
     /// use viscocontact::prelude::*;
@@ -42,14 +43,16 @@ impl Fields<'_> {
     /// ```
     ///
     /// # Errors
-    /// If [ranks](crate::parallel) share out the rows, surfaces [attract](crate::adhesion) each other, or there is no memory for the coarser contacts.
+    /// If [ranks](crate::parallel) share out the rows, surfaces [attract](crate::adhesion) each other, or there is no
+    /// memory for the coarser contacts.
     pub fn mesh_error(&self) -> Result<Option<MeshError>> {
         self.covers(coverage::MESH_ERROR)?;
         mesh_error(*self)
     }
 }
 
-/// Fewest cells across the contact of a body on half and on a quarter of the cells along a side: the latter show an order.
+/// Fewest cells across the contact of a body on half and on a quarter of the cells along a side: the latter show an
+/// order.
 const FEWEST: [usize; 2] = [3, 8];
 
 /// A state on a mesh.
@@ -72,7 +75,8 @@ fn touches(fields: Fields<'_>, body: usize) -> bool {
     fields.body(body).is_some_and(|own| own.contact_cells > 0)
 }
 
-/// What the state of a contact is on a coarser mesh: its gap and its surface before the pressure now, at every so many cells, and its compliance.
+/// What the state of a contact is on a coarser mesh: its gap and its surface before the pressure now, at every so
+/// many cells, and its compliance.
 struct State<'a> {
     fields: Fields<'a>,
     gap: Vec<f64>,
@@ -81,7 +85,8 @@ struct State<'a> {
 }
 
 impl State<'_> {
-    /// u = u₀ + c K p with the c of least squares: an elastic body has u₀ = 0, and one that creeps keeps in it what its history left.
+    /// u = u₀ + c K p with the c of least squares: an elastic body has u₀ = 0, and one that creeps keeps in it what
+    /// its history left.
     fn of(fields: Fields<'_>) -> Result<Option<State<'_>>> {
         let (grid, pressure) = (fields.grid(), fields.pressure());
         let (mut potential, kernel) = (vec![0.0; grid.len()], fields.kernel());
@@ -101,7 +106,8 @@ impl State<'_> {
         Ok(Some(State { fields, gap: gap.collect(), surface, compliance }))
     }
 
-    /// The elastic contact on every so many cells along each side; nothing where they do not divide a period, or are no mesh of this body.
+    /// The elastic contact on every so many cells along each side; nothing where they do not divide a period, or are
+    /// no mesh of this body.
     fn on_every(&self, step: usize) -> Result<Option<Coarse>> {
         let (fields, [n1, n2]) = (self.fields, self.fields.grid().cells());
         let (spacing, periodic) = (fields.grid().spacing(), fields.kernel().periodic_axes());
@@ -144,7 +150,8 @@ impl State<'_> {
     }
 }
 
-/// The errors of a state; `None` without contact, where half the cells are too few or no mesh of this body, or nothing is pressed there.
+/// The errors of a state; `None` without contact, where half the cells are too few or no mesh of this body, or
+/// nothing is pressed there.
 fn mesh_error(fields: Fields<'_>) -> Result<Option<MeshError>> {
     if fields.contact_cells() == 0 {
         return Ok(None);

@@ -1,11 +1,11 @@
 //! Elastic contacts: rigid bodies on an elastic body, without time.
 //!
 //! [`ElasticContact`] finds pressure, contact and motions under a load: the contact problem that every step of a creeping contact
-//! solves, with a compliance that stays. Solutions follow each other as loads do: each begins from the one before, so that a
-//! sweep over loads costs a few convolutions a load.
+//! solves, with a compliance that stays. Solutions follow each other as loads do: each begins from the one before, so
+//! that a sweep over loads costs a few convolutions a load.
 //!
-//! One's own step loop stands on it, too: a creeping body whose history no series describes has at each step a compliance, and
-//! a surface that the past has displaced ([`ElasticContact::set_surface`]).
+//! One's own step loop stands on it, too: a creeping body whose history no series describes has at each step a
+//! compliance, and a surface that the past has displaced ([`ElasticContact::set_surface`]).
 
 mod builder;
 mod mesh_error;
@@ -55,7 +55,8 @@ use crate::{Grid, memory};
 /// # Ok::<(), Error>(())
 /// ```
 ///
-/// Several bodies, free tilts and springs are loads and shapes as in a [`ViscoelasticContact`](crate::ViscoelasticContact), and
+/// Several bodies, free tilts and springs are loads and shapes as in a
+/// [`ViscoelasticContact`](crate::ViscoelasticContact), and
 /// [`Fields`] is what is read of either.
 #[derive(Debug, Clone)]
 pub struct ElasticContact {
@@ -116,8 +117,8 @@ impl ElasticContact {
         grid + solver + kernel + (Trial::BYTES_PER_CELL + 24) as u64 * region.len() as u64
     }
 
-    /// Finds the equilibrium under one [`Load`], or a load for each rigid body in the order of the builder: from the last one,
-    /// which a failure leaves as it is. A solution after a similar load costs about five convolutions.
+    /// Finds the equilibrium under one [`Load`], or a load for each rigid body in the order of the builder: from the
+    /// last one, which a failure leaves as it is. A solution after a similar load costs about five convolutions.
     ///
     /// ```
     /// use viscocontact::elastic::ElasticContact;
@@ -134,10 +135,10 @@ impl ElasticContact {
     /// ```
     ///
     /// # Errors
-    /// If a force is negative, a number not finite, a force acts where it would topple the body, contact reaches the edge of the
-    /// grid (unless [`Edge::Allow`](crate::contact::Edge::Allow)), an approach closes every gap of periodic bodies, a layer on a
-    /// rigid base is pressed through, the solver does not converge, there is no memory for the cells that the contact reaches,
-    /// or there is not one load for each body.
+    /// If a force is negative, a number not finite, a force acts where it would topple the body, contact reaches the
+    /// edge of the grid (unless [`Edge::Allow`](crate::contact::Edge::Allow)), an approach closes every gap of
+    /// periodic bodies, a layer on a rigid base is pressed through, the solver does not converge, there is no memory
+    /// for the cells that the contact reaches, or there is not one load for each body.
     pub fn solve(&mut self, loads: impl AsRef<[Load]>) -> Result<ElasticReport> {
         self.solve_to(self.ground.settings.tolerance, None, loads.as_ref())
     }
@@ -184,9 +185,9 @@ impl ElasticContact {
         }
     }
 
-    /// The displacement \[m\] that the surface has before any pressure, positive into the bodies, one value per cell: the next
-    /// solution adds C K p to it. Fields keep those of the last solution until then. All of the grid is computed from here on,
-    /// but for mirror images.
+    /// The displacement \[m\] that the surface has before any pressure, positive into the bodies, one value per cell:
+    /// the next solution adds C K p to it. Fields keep those of the last solution until then. All of the grid is
+    /// computed from here on, but for mirror images.
     ///
     /// # Errors
     /// If there is not one finite value per cell, or no memory for all cells. The surface then stays as it is.

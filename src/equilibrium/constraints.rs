@@ -1,4 +1,5 @@
-//! The free motions of a step, checks of its loads and results, and the width of the grid that a contact at the edge needs.
+//! The free motions of a step, checks of its loads and results, and the width of the grid that a contact at the edge
+//! needs.
 
 use std::f64::consts::PI;
 
@@ -105,8 +106,8 @@ pub(crate) fn converged(outcome: Outcome, ground: &Ground, solution: &Solution, 
     }
 }
 
-/// Rejects results that overflow, contact at the edge of the grid, and bodies pressed through a layer on a rigid base. Returns Σ p.
-/// `displaced` is the sum of the displacements.
+/// Rejects results that overflow, contact at the edge of the grid, and bodies pressed through a layer on a rigid
+/// base. Returns Σ p. `displaced` is the sum of the displacements.
 pub(crate) fn acceptable(
     ground: &Ground,
     held: &Held,
@@ -152,11 +153,12 @@ pub(crate) fn acceptable(
 /// Exponents of a gap between these are fitted; a surface that is rough or flat has none.
 const EXPONENTS: std::ops::RangeInclusive<f64> = 0.7..=6.0;
 
-/// Estimates the lengths of a grid that holds the contact of a trial, which reaches the edge; `None` where the gap does not rise
-/// towards the edge like a power of the distance, along periodic axes, of several bodies and on ranks.
+/// Estimates the lengths of a grid that holds the contact of a trial, which reaches the edge; `None` where the gap
+/// does not rise towards the edge like a power of the distance, along periodic axes, of several bodies and on ranks.
 ///
-/// On an elastic half-space an indenter whose gap is A rⁿ touches within a radius a at the approach κ A aⁿ. Cut off at the radius L,
-/// at the edge of the grid, it carries the same force at the approach ω with (a / L)ⁿ⁺¹ = ((n + 1) ω / (κ A Lⁿ) − 1) / n.
+/// On an elastic half-space an indenter whose gap is A rⁿ touches within a radius a at the approach κ A aⁿ. Cut off
+/// at the radius L, at the edge of the grid, it carries the same force at the approach ω with (a / L)ⁿ⁺¹ = ((n + 1)
+/// ω / (κ A Lⁿ) − 1) / n.
 fn needed_lengths(ground: &Ground, held: &Held, trial: &Trial, request: Request<'_>) -> Option<[f64; 2]> {
     let (grid, gap) = (&ground.grid, request.indenter.gap());
     let single = request.indenter.bodies() == 1 && !held.region.is_shared();
@@ -195,8 +197,8 @@ fn needed_lengths(ground: &Ground, held: &Held, trial: &Trial, request: Request<
     (needed != grid.lengths() && needed.iter().all(|length| length.is_finite())).then_some(needed)
 }
 
-/// κ of the shape A rⁿ, which touches within a at the depth κ A aⁿ (Galin; Sneddon 1965): √π Γ(n/2 + 1) / Γ((n + 1)/2), π/2 for a cone, 2
-/// for a paraboloid.
+/// κ of the shape A rⁿ, which touches within a at the depth κ A aⁿ (Galin; Sneddon 1965): √π
+/// Γ(n/2 + 1) / Γ((n + 1)/2), π/2 for a cone, 2 for a paraboloid.
 pub(crate) fn depth_of_power(exponent: f64) -> f64 {
     PI.sqrt() * libm::tgamma(0.5 * exponent + 1.0) / libm::tgamma(0.5 * exponent + 0.5)
 }

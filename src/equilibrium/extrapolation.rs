@@ -4,9 +4,9 @@
 pub(crate) const MAX_REACH: f64 = 2.0;
 
 /// The first guess of a step extrapolates p and K p alike, which saves a convolution but lets the rounding of K p
-/// accumulate, step by step linearly. After so many steps K p is computed afresh, in two successive steps: extrapolation
-/// reads two states, and one left stale would feed its error back, multiplied. This costs a thirty-second of a convolution
-/// per step.
+/// accumulate, step by step linearly. After so many steps K p is computed afresh, in two successive steps:
+/// extrapolation reads two states, and one left stale would feed its error back, multiplied. This costs a
+/// thirty-second of a convolution per step.
 const STEPS_BETWEEN_REFRESHES: usize = 62;
 
 /// K p is computed afresh, too, when the force has fallen by this factor: the rounding came from the larger force.

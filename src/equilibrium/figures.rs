@@ -14,7 +14,8 @@ const SOLID: std::ops::RangeInclusive<f64> = 10.0..=1e13;
 
 /// Contact this near to an edge is near it \[cells\].
 const EDGE_MARGIN: usize = 2;
-/// The numbers behind [`Warnings`], each `None` where the scene is far from its limit; `Display` of a [`StepReport`](crate::contact::StepReport) prints them with the warnings.
+/// The numbers behind [`Warnings`], each `None` where the scene is far from its limit; `Display` of a
+/// [`StepReport`](crate::contact::StepReport) prints them with the warnings.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -24,9 +25,9 @@ pub struct Figures {
     /// Greatest displacement in contact over the thickness of a layer, of every contact on a [`Layer`](crate::Layer)
     /// ([`Warnings::DEEP`]). On a half-space it is the part of the displacement that the layer takes.
     pub compression: Option<f64>,
-    /// Cells across the contact, if fewer than eight ([`Warnings::FEW_CELLS`]): 4/π times the mean length of its rows or columns,
-    /// whichever are shorter, which is the diameter of a disc and the average one of many patches of contact; at most the extent of
-    /// all contact. Of several bodies, that of the body with the fewest.
+    /// Cells across the contact, if fewer than eight ([`Warnings::FEW_CELLS`]): 4/π times the mean length of its rows
+    /// or columns, whichever are shorter, which is the diameter of a disc and the average one of many patches of
+    /// contact; at most the extent of all contact. Of several bodies, that of the body with the fewest.
     pub cells_across: Option<f64>,
     /// Cells in the shortest wave of the shapes, if fewer than four ([`Warnings::SHORT_WAVES`]).
     pub cells_in_wave: Option<f64>,
@@ -34,7 +35,8 @@ pub struct Figures {
     pub periods: Option<f64>,
     /// Cells in the zone in which an attraction acts, if fewer than four ([`Warnings::COARSE_ZONE`]).
     pub cells_in_zone: Option<f64>,
-    /// The force that the attraction beyond the edge of the grid would add, over the force on it, if the part matters ([`Warnings::BEYOND_EDGE`]).
+    /// The force that the attraction beyond the edge of the grid would add, over the force on it, if the part matters
+    /// ([`Warnings::BEYOND_EDGE`]).
     pub beyond_edge: Option<f64>,
     /// The contact modulus at once \[Pa\], if no solid has it ([`Warnings::MODULUS`]).
     pub modulus: Option<f64>,
@@ -77,13 +79,15 @@ impl Figures {
     }
 }
 
-/// The contact modulus \[Pa\] of a compliance, if no solid has it. A body without elastic response has no modulus at once.
+/// The contact modulus \[Pa\] of a compliance, if no solid has it. A body without elastic response has no modulus at
+/// once.
 pub(crate) fn modulus_of_no_solid(compliance: f64) -> Option<f64> {
     Some(1.0 / compliance).filter(|e| e.is_finite() && !SOLID.contains(e))
 }
 
 impl Held {
-    /// The numbers of an elastic contact that presses so, with what the grid `missed` of its shapes. A call of all ranks.
+    /// The numbers of an elastic contact that presses so, with what the grid `missed` of its shapes. A call of all
+    /// ranks.
     pub(crate) fn figures(&self, ground: &Ground, missed: Missed, pressed: &Pressed) -> Figures {
         let Held { indenter, region, current, .. } = self;
         let (pressure, datum) = (&current.solution.pressure, indenter.gap().datum);
@@ -124,8 +128,8 @@ impl Held {
 }
 
 impl Ground {
-    /// Greatest displacement in contact over the thickness of a layer, as far as the layer and not its base is displaced; `None` without
-    /// layer or contact. `motions` count from the datum of the gap. A call of all ranks.
+    /// Greatest displacement in contact over the thickness of a layer, as far as the layer and not its base is
+    /// displaced; `None` without layer or contact. `motions` count from the datum of the gap. A call of all ranks.
     pub(crate) fn compression(
         &self,
         indenter: &Indenter,

@@ -17,8 +17,8 @@ pub(crate) struct RigidBodies<'a> {
 }
 
 impl RigidBodies<'_> {
-    /// The retraction of a body in a step that prescribes all of its motion; zero for a held body. `None` unless hi + u in
-    /// contact is its motion at the start.
+    /// The retraction of a body in a step that prescribes all of its motion; zero for a held body. `None` unless
+    /// hi + u in contact is its motion at the start.
     fn retraction(&self, body: usize) -> Option<RigidMotion> {
         let load = self.request.loads[body];
         let Load::Approach { approach, tilt: [Tilt::Fixed(tilt1), Tilt::Fixed(tilt2)] } = load else { return None };
@@ -44,8 +44,8 @@ impl RigidBodies<'_> {
         (0..self.request.loads.len()).map(|body| reach(taken(body))).fold(0.0, f64::max)
     }
 
-    /// Writes the gap before any pressure and free motion: hi + u_old − (prescribed part of ω + α·x), Eq. 1 of the paper;
-    /// of a surface that nothing has displaced where u_old is not given.
+    /// Writes the gap before any pressure and free motion: hi + u_old − (prescribed part of ω + α·x), Eq. 1 of the
+    /// paper; of a surface that nothing has displaced where u_old is not given.
     pub(crate) fn fill_gap(&self, initial: &Gap, u_old: Option<&[f64]>, gap: &mut [f64]) {
         let (bodies, first) = (self.request.loads.len(), self.request.prescribed(0));
         let upright = bodies == 1 && first.tilt == [0.0; 2];
@@ -65,9 +65,9 @@ impl RigidBodies<'_> {
         }
     }
 
-    /// u = u_old + c K p. Where the displacement is `integrated`, the surface in contact is then set to the surface of the
-    /// rigid body. Otherwise the residual of this step would stay in u, and a later, much stiffer step, such as a jump after a
-    /// long hold, would amplify it.
+    /// u = u_old + c K p. Where the displacement is `integrated`, the surface in contact is then set to the surface
+    /// of the rigid body. Otherwise the residual of this step would stay in u, and a later, much stiffer step, such
+    /// as a jump after a long hold, would amplify it.
     pub(crate) fn displace(&self, initial: &Gap, c: f64, integrated: bool, trial: &Trial, u: &mut [f64]) {
         let Trial { solution, gap, free, .. } = trial;
         if let (true, &[Freedom { tilt: [false, false], .. }]) = (integrated, &free[..]) {

@@ -28,7 +28,8 @@ impl Ground {
     /// The constants of a contact of so many bodies without attraction, on a half-space unless a kernel is given.
     ///
     /// # Errors
-    /// If a setting is out of range, there is no body or too many, or the kernel belongs to another grid or cannot be made.
+    /// If a setting is out of range, there is no body or too many, or the kernel belongs to another grid or cannot be
+    /// made.
     pub(crate) fn of(
         grid: &Grid,
         kernel: Option<&Arc<InfluenceKernel>>,
@@ -66,8 +67,8 @@ impl Ground {
         count_within("cells that are computed", cells, u32::try_from(cells).is_ok(), allowed)
     }
 
-    /// Bytes of gap and pressure on the whole grid, of the solver with its preconditioner, and of kernel and work space, of a
-    /// contact that is computed on a region.
+    /// Bytes of gap and pressure on the whole grid, of the solver with its preconditioner, and of kernel and work
+    /// space, of a contact that is computed on a region.
     pub(crate) fn bytes_on(&self, region: &Region) -> [u64; 3] {
         // a rank without rows is counted as one row
         let cells = region.cells().map(|count| count.max(1));
@@ -98,8 +99,8 @@ pub(crate) fn check_bodies(bodies: usize) -> Result<()> {
     count_within("rigid bodies", bodies, u16::try_from(bodies).is_ok(), "65535 at most")
 }
 
-/// Whether only a part of the grid is computed: under pressures on half-spaces only, since the displacement outside a window is
-/// bounded for these alone.
+/// Whether only a part of the grid is computed: under pressures on half-spaces only, since the displacement outside a
+/// window is bounded for these alone.
 pub(crate) fn windowed(ground: &Ground) -> bool {
     let half_space = ground.kernel.half_space_below() == Some(HalfSpace::LoadedOnGrid);
     ground.settings.window && ground.attraction.is_none() && half_space

@@ -5,16 +5,18 @@ use crate::equilibrium::{Equilibrium, Held, Request, Trial, Window};
 use crate::parallel::{Rows, for_each_band};
 use crate::solver::{Counts, Freedom, RigidMotion, Solution};
 
-/// A guess is extrapolated only if it carries the force to within this factor: the remainder of a cancellation is noise.
+/// A guess is extrapolated only if it carries the force to within this factor: the remainder of a cancellation is
+/// noise.
 const MAX_FORCE_RATIO: f64 = 1.5;
 
-/// If motions are given and the pressure falls to less than this share in a step, its last change does not predict the next:
-/// the guess is the last pressure times the share.
+/// If motions are given and the pressure falls to less than this share in a step, its last change does not predict
+/// the next: the guess is the last pressure times the share.
 const MAX_SHARE_LEFT: f64 = 0.5;
 
-/// Fills the trial with a guess at the compliance `c`: p and K p extrapolated from the equilibrium `before` the last one, as far as
-/// `longest` times its distance. Under bodies of given motion whose pressure falls a lot, the last pressure is scaled: an
-/// extrapolated K p would keep the rounding of the greater pressure. Returns whether the guess is extrapolated.
+/// Fills the trial with a guess at the compliance `c`: p and K p extrapolated from the equilibrium `before` the last
+/// one, as far as `longest` times its distance. Under bodies of given motion whose pressure falls a lot, the last
+/// pressure is scaled: an extrapolated K p would keep the rounding of the greater pressure. Returns whether the guess
+/// is extrapolated.
 pub(crate) fn initial_guess(
     held: &Held,
     (before, longest): (&Equilibrium, f64),
@@ -62,8 +64,8 @@ pub(crate) fn initial_guess(
     reach > 0.0
 }
 
-/// The share of the last pressure that best closes the gap of the step, if it is small. It is exact on a fixed contact with a
-/// single relaxation time, and under a punch that is retracted from an elastic body.
+/// The share of the last pressure that best closes the gap of the step, if it is small. It is exact on a fixed
+/// contact with a single relaxation time, and under a punch that is retracted from an elastic body.
 fn share_left(held: &Held, trial: &Trial, c: f64) -> Option<f64> {
     let (now, rows) = (&held.current.solution, held.region.rows());
     let pressed = |k: usize| now.pressure[k] > 0.0;
@@ -80,8 +82,9 @@ fn share_left(held: &Held, trial: &Trial, c: f64) -> Option<f64> {
     (share < MAX_SHARE_LEFT).then_some(share.max(0.0))
 }
 
-/// The reach a of the guess p₀ + a (p₀ − p₁), scaled to Σ p = `wanted`, with the least energy ½ c p·K p + gap·p. It costs no
-/// convolution, since K p₀ and K p₁ are known. It predicts a creep that slows down better than the length of the step does.
+/// The reach a of the guess p₀ + a (p₀ − p₁), scaled to Σ p = `wanted`, with the least energy ½ c p·K p + gap·p. It
+/// costs no convolution, since K p₀ and K p₁ are known. It predicts a creep that slows down better than the length of
+/// the step does.
 fn best_reach([now, before]: [&Solution; 2], rows: &Rows, gap: &[f64], c: f64, wanted: f64) -> Option<f64> {
     let [p, dp, gap_p, gap_dp, pv, pdv, dpdv] = rows.sum_terms(|k| {
         let (p, v) = (now.pressure[k], now.potential[k]);

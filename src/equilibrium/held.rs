@@ -1,5 +1,5 @@
-//! What an elastic contact holds between two solutions: the rigid bodies, the part of the grid that is computed, and the
-//! equilibrium found there.
+//! What an elastic contact holds between two solutions: the rigid bodies, the part of the grid that is computed, and
+//! the equilibrium found there.
 
 use std::sync::Arc;
 
@@ -76,7 +76,8 @@ impl Held {
 }
 
 impl Held {
-    /// Makes the trial of a request what is held; `sum` is Σ p, `contact_cells` is the number of pressed cells of the region.
+    /// Makes the trial of a request what is held; `sum` is Σ p, `contact_cells` is the number of pressed cells of the
+    /// region.
     pub(crate) fn take(&mut self, trial: &mut Trial, request: Request<'_>, sum: f64, contact_cells: usize) {
         let datum = request.indenter.gap().datum;
         std::mem::swap(&mut self.current.solution, &mut trial.solution);

@@ -23,8 +23,8 @@ pub(crate) struct Request<'a> {
 }
 
 impl Request<'_> {
-    /// The part of a body's motion that its load prescribes; zero for free components. The approach counts from the datum of
-    /// the gap.
+    /// The part of a body's motion that its load prescribes; zero for free components. The approach counts from the
+    /// datum of the gap.
     pub(crate) fn prescribed(&self, body: usize) -> RigidMotion {
         let (load, datum) = (&self.loads[body], self.indenter.gap().datum);
         let approach = match load {

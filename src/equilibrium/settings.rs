@@ -7,7 +7,8 @@ use crate::hereditary::Interpolant;
 pub(crate) const DEFAULT_TOLERANCE: f64 = 1e-6;
 
 value! {
-/// How a contact is computed: [`Settings::default`], changed by methods `with_…`, and validated when a contact is built.
+/// How a contact is computed: [`Settings::default`], changed by methods `with_…`, and validated when a contact is
+/// built.
 ///
 /// ```
 /// use viscocontact::contact::{Settings, TimeRule};
@@ -20,10 +21,11 @@ value! {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default))]
 pub struct Settings {
-    /// Tolerance of the contact problem of a step: rms |h| in contact, relative to rms (c K p) there; the
-    /// deepest penetration, in contact or outside, may be ten times that (default: 1e-6; range \[1e-13, 0.1\]). Adaptive steps
-    /// solve to 0.03 of their own tolerance if that is more, unless this one is stricter than the default. Where surfaces attract each other,
-    /// forces are as exact, over the greatest attraction, down to 3e-4, and below 1e-6 to three hundred tolerances.
+    /// Tolerance of the contact problem of a step: rms |h| in contact, relative to rms (c K p) there; the deepest
+    /// penetration, in contact or outside, may be ten times that (default: 1e-6; range \[1e-13, 0.1\]). Adaptive
+    /// steps solve to 0.03 of their own tolerance if that is more, unless this one is stricter than the default.
+    /// Where surfaces attract each other, forces are as exact, over the greatest attraction, down to 3e-4, and below
+    /// 1e-6 to three hundred tolerances.
     tolerance: f64, with_tolerance;
     /// Iterations a step may take before it fails (default: 1000; range: 1 or more).
     max_iterations: usize, with_max_iterations;
@@ -33,18 +35,20 @@ pub struct Settings {
     time_rule: TimeRule, with_time_rule;
     /// What happens when contact reaches the edge of the grid (default: [`Edge::Refuse`]).
     edge: Edge, with_edge;
-    /// Relative error of the creep compliance of an exponential series that is fitted to a rheology without an exact one (default: 1e-4; range \[1e-8, 0.1\]).
+    /// Relative error of the creep compliance of an exponential series that is fitted to a rheology without an exact
+    /// one (default: 1e-4; range \[1e-8, 0.1\]).
     series_tolerance: f64, with_series_tolerance;
     /// Memory that a direct sum may use for past steps, 8 bytes per computed cell and step; a step beyond it fails
     /// \[bytes\] (default: 2 GiB).
     history_limit: usize, with_history_limit;
-    /// Whether only half or a quarter of the cells is computed where gap and load are even in x1, x2, or both, bitwise, and
-    /// the number of cells along that axis is even (default: true). The iterations of the solver differ, and so does the result, by about ten times
-    /// the [tolerance](Settings::tolerance) in the pressure and less in the approach.
+    /// Whether only half or a quarter of the cells is computed where gap and load are even in x1, x2, or both,
+    /// bitwise, and the number of cells along that axis is even (default: true). The iterations of the solver differ,
+    /// and so does the result, by about ten times the [tolerance](Settings::tolerance) in the pressure and less in
+    /// the approach.
     symmetry: bool, with_symmetry;
-    /// Whether only the rectangle in which the bodies can touch is computed, and the rest of the grid on demand (default:
-    /// true). The rectangle grows with the contact; a step in which it grows allocates memory. With direct sums, and on bodies
-    /// other than the half-space loaded on the grid, such as layers, the whole grid is computed.
+    /// Whether only the rectangle in which the bodies can touch is computed, and the rest of the grid on demand
+    /// (default: true). The rectangle grows with the contact; a step in which it grows allocates memory. With direct
+    /// sums, and on bodies other than the half-space loaded on the grid, such as layers, the whole grid is computed.
     window: bool, with_window;
     /// The frame of the grid (default: [`Frame::Bodies`]).
     frame: Frame, with_frame;
@@ -57,14 +61,14 @@ pub struct Settings {
 #[non_exhaustive]
 pub enum Frame {
     /// The creeping bodies: an indenter moves over the grid
-    /// ([`ViscoelasticContact::step_along`](crate::ViscoelasticContact::step_along)), by any path, as far as the grid reaches, or
-    /// endlessly on periodic bodies.
+    /// ([`ViscoelasticContact::step_along`](crate::ViscoelasticContact::step_along)), by any path, as far as the grid
+    /// reaches, or endlessly on periodic bodies.
     #[default]
     Bodies,
     /// The indenter: the bodies move under the grid, by whole cells
-    /// ([`ViscoelasticContact::step_over`](crate::ViscoelasticContact::step_over)), endlessly. A step costs one convolution
-    /// more; a further relaxation time costs two fields and their recursion. The whole grid is computed, by the exponential
-    /// rule.
+    /// ([`ViscoelasticContact::step_over`](crate::ViscoelasticContact::step_over)), endlessly. A step costs one
+    /// convolution more; a further relaxation time costs two fields and their recursion. The whole grid is computed,
+    /// by the exponential rule.
     Indenter,
 }
 
@@ -82,31 +86,33 @@ pub enum Solver {
     PolonskyKeer,
 }
 
-/// The time rule of the hereditary integral. Figure 6 of the [paper](crate::paper) compares numbers of steps by its rule.
+/// The time rule of the hereditary integral. Figure 6 of the [paper](crate::paper) compares numbers of steps by its
+/// rule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum TimeRule {
-    /// Exponential integration of the relaxation form, stable for steps of any length, one field per relaxation time. Within
-    /// a step the displacement is a polynomial of time through its last values, and each step corrects the step before, which
-    /// had one value less. Steps of given length take it to be linear: third order. Steps chosen by their error
-    /// ([`Stepping::adaptive`](crate::run::Stepping::adaptive)), and all of a body without elastic response (as
-    /// Kelvin–Voigt), take it to be quadratic: fourth order, second without elastic response. A kink of the displacement, as
-    /// at cells that come into contact, is met with second order.
+    /// Exponential integration of the relaxation form, stable for steps of any length, one field per relaxation time.
+    /// Within a step the displacement is a polynomial of time through its last values, and each step corrects the
+    /// step before, which had one value less. Steps of given length take it to be linear: third order. Steps chosen
+    /// by their error ([`Stepping::adaptive`](crate::run::Stepping::adaptive)), and all of a body without elastic
+    /// response (as Kelvin–Voigt), take it to be quadratic: fourth order, second without elastic response. A kink of
+    /// the displacement, as at cells that come into contact, is met with second order.
     ///
     /// A rheology without an exact exponential series gets a fitted one: see
     /// [`Builder::times`](crate::contact::Builder::times).
     #[default]
     Exponential,
-    /// The same with the displacement linear within each step, and no correction afterwards: second order (first without
-    /// elastic response). A prediction never rises above the undeformed surface, whatever the lengths of the steps.
+    /// The same with the displacement linear within each step, and no correction afterwards: second order (first
+    /// without elastic response). A prediction never rises above the undeformed surface, whatever the lengths of the
+    /// steps.
     ExponentialLinear,
     /// The rule of the source paper, a direct sum over all past steps (Eq. 11): first order, oscillates when
     /// a step is longer than the relaxation time of a Maxwell body and diverges beyond twice that; needs
     /// an elastic response.
     Rectangle,
-    /// A direct sum over all past steps with the rheology's own J(t), without a series: first order, stable for steps of
-    /// any length, one field per past step ([`Settings::history_limit`]).
+    /// A direct sum over all past steps with the rheology's own J(t), without a series: first order, stable for steps
+    /// of any length, one field per past step ([`Settings::history_limit`]).
     Backward,
 }
 
@@ -115,8 +121,8 @@ pub enum TimeRule {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Edge {
-    /// The step fails with [`StepError::ContactAtEdge`](crate::contact::StepError::ContactAtEdge): the bodies go on beyond the grid, so that the
-    /// result would be wrong.
+    /// The step fails with [`StepError::ContactAtEdge`](crate::contact::StepError::ContactAtEdge): the bodies go on
+    /// beyond the grid, so that the result would be wrong.
     #[default]
     Refuse,
     /// The step continues: the rigid body ends where the grid does.
@@ -148,9 +154,9 @@ impl TimeRule {
 }
 
 impl Settings {
-    /// The whole algorithm of the source paper: Polonsky–Keer solver, rectangle rule, direct sums. The baseline of every
-    /// comparison. It is cheaper than the paper's in one respect: the convolutions of past increments are kept. The example
-    /// `paper_cost` repeats them in each step.
+    /// The whole algorithm of the source paper: Polonsky–Keer solver, rectangle rule, direct sums. The baseline of
+    /// every comparison. It is cheaper than the paper's in one respect: the convolutions of past increments are kept.
+    /// The example `paper_cost` repeats them in each step.
     pub fn paper() -> Settings {
         Settings {
             solver: Solver::PolonskyKeer,

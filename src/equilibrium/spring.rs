@@ -1,9 +1,10 @@
 //! Bodies that springs drive.
 //!
-//! The force F of a spring is the solution of g(F) = ω(F) + F/k − z = 0, with ω(F) the approach at the end of the step under the force F.
-//! ω never falls as F grows, since it is the slope of a convex energy, so that there is one solution. It is found by the steps of Barzilai
-//! and Borwein (IMA J. Numer. Anal. 8, 1988), which for one body are those of the secant method. Each solves the contact problem
-//! from the pressure of the last, which is nearly in balance.
+//! The force F of a spring is the solution of g(F) = ω(F) + F/k − z = 0, with ω(F) the approach at the end of the
+//! step under the force F. ω never falls as F grows, since it is the slope of a convex energy, so that there is one
+//! solution. It is found by the steps of Barzilai and Borwein (IMA J. Numer. Anal. 8, 1988), which for one body are
+//! those of the secant method. Each solves the contact problem from the pressure of the last, which is nearly in
+//! balance.
 
 use std::f64::consts::PI;
 
@@ -25,7 +26,8 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// Halvings of the depth of a first contact.
 const HALVINGS: usize = 40;
 
-/// The springs of the bodies, each with the body that it drives, its compliance \[m/N\] and its drive from the datum of the gap.
+/// The springs of the bodies, each with the body that it drives, its compliance \[m/N\] and its drive from the datum
+/// of the gap.
 fn springs(request: Request<'_>) -> impl Iterator<Item = (usize, f64, f64)> + Clone {
     let datum = request.indenter.gap().datum;
     request.loads.iter().enumerate().filter_map(move |(body, load)| match *load {
@@ -40,14 +42,15 @@ fn yielding(ground: &Ground, held: &Held, c: f64) -> f64 {
     0.5 * c / (pressed * ground.grid.cell_area() / PI).sqrt()
 }
 
-/// The greatest part of an error of the force under a given approach that a spring leaves: 1 of a spring far stiffer than the contact, 0
-/// without springs.
+/// The greatest part of an error of the force under a given approach that a spring leaves: 1 of a spring far stiffer
+/// than the contact, 0 without springs.
 pub(crate) fn share_of_force(ground: &Ground, held: &Held, request: Request<'_>, c: f64) -> f64 {
     let yielding = yielding(ground, held, c);
     springs(request).fold(0.0, |most, (_, give, _)| f64::max(most, yielding / (yielding + give)))
 }
 
-/// Writes the first forces to try to the free motions: those that the present pressure, and in a first contact the shape, suggest.
+/// Writes the first forces to try to the free motions: those that the present pressure, and in a first contact the
+/// shape, suggest.
 pub(crate) fn guess_forces(ground: &Ground, held: &Held, gap: &Gap, request: Request<'_>, c: f64, trial: &mut Trial) {
     let (area, rows, now) = (held.region.cell_area(), held.region.rows(), &held.current.solution);
     for (body, give, drive) in springs(request) {
@@ -124,7 +127,8 @@ pub(crate) fn solve_with_springs(
             }
             let mut next = (force - ratio * excess / (give + least)).max(0.0);
             if next == 0.0 && trial.free[body].tilts() {
-                // without force it hangs above the surface in this tilt, if it is higher than all of this force lowers it
+                // without force it hangs above the surface in this tilt, if it is higher than all of this force
+                // lowers it
                 let lifts = excess > 2.0 * force * (give + one_cell);
                 (next, trial.springs[body].hanging) =
                     if lifts { (0.0, Some(*motion)) } else { (SMALLER * force, None) };

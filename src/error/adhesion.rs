@@ -11,11 +11,15 @@ pub enum AdhesionError {
 
     /// The mesh does not resolve the zone in which the attraction acts.
     #[error(
-        "the attraction acts over a zone of {cells:.2} cells at the edge of the contact, and at least {least} are needed: take cells of at most {} m, or a range of at least {} m (a longer range at the same work of separation changes the pull-off force of an elastic body by little while Tabor's number stays above 3; on a creeping body it stands for a slower pull)",
+        "the attraction acts over a zone of {cells:.2} cells at the edge of the contact, and at least {least} are \
+        needed: take cells of at most {} m, or a range of at least {} m (a longer range at the same work of \
+        separation changes the pull-off force of an elastic body by little while Tabor's number stays above 3; on \
+        a creeping body it stands for a slower pull)",
         rounded(*.spacing, 3), rounded(*.range, 3)
     )]
     ZoneNotResolved {
-        /// Cells in the zone: E* at once over the steepest slope of the attraction, or over w/ρ² if that is more, and over the side of a cell.
+        /// Cells in the zone: E* at once over the steepest slope of the attraction, or over w/ρ² if that is more, and
+        /// over the side of a cell.
         cells: f64,
         /// Least number of cells.
         least: f64,
@@ -25,8 +29,8 @@ pub enum AdhesionError {
         range: f64,
     },
 
-    /// The load pulls harder than the surfaces hold: no state carries it. The contact stays as it was before the step; under a given
-    /// approach ([`Load::approach`](crate::load::Load::approach)) it continues apart:
+    /// The load pulls harder than the surfaces hold: no state carries it. The contact stays as it was before the
+    /// step; under a given approach ([`Load::approach`](crate::load::Load::approach)) it continues apart:
     ///
     /// ```
     /// use viscocontact::adhesion::{AdhesionError, ExponentialAttraction};
@@ -48,7 +52,8 @@ pub enum AdhesionError {
     /// assert!(contact.fields().is_separated());
     /// # Ok::<(), Error>(())
     /// ```
-    #[error("at t = {} s the force of {} N pulls the bodies off: no contact carries it; go on under a given approach, or with a spring", rounded(*.time, TIME), rounded(*.force, 5))]
+    #[error("at t = {} s the force of {} N pulls the bodies off: no contact carries it; go on under a given \
+        approach, or with a spring", rounded(*.time, TIME), rounded(*.force, 5))]
     PulledOff {
         /// End of the step \[s\].
         time: f64,
@@ -56,10 +61,14 @@ pub enum AdhesionError {
         force: f64,
     },
 
-    /// The attraction beyond the edge of the grid, which is not computed, would add more than 5 % of the force. Enlarge the grid, or choose
+    /// The attraction beyond the edge of the grid, which is not computed, would add more than 5 % of the force.
+    /// Enlarge the grid, or choose
     /// [`Edge::Allow`](crate::contact::Edge::Allow) if the body really ends there. From 1e-3 on steps warn
     /// ([`Warnings::BEYOND_EDGE`](crate::contact::Warnings::BEYOND_EDGE)).
-    #[error("at t = {} s the attraction beyond the edge of the grid of {} × {} m would add {:.0} % of the force, where 5 % are allowed: enlarge the grid, give a surface that repeats a periodic body (InfluenceKernel::periodic), or set Settings::edge to Edge::Allow if the body ends there", rounded(*.time, TIME), rounded(.lengths[0], 4), rounded(.lengths[1], 4), 100.0 * share)]
+    #[error("at t = {} s the attraction beyond the edge of the grid of {} × {} m would add {:.0} % of the force, \
+        where 5 % are allowed: enlarge the grid, give a surface that repeats a periodic body \
+        (InfluenceKernel::periodic), or set Settings::edge to Edge::Allow if the body ends \
+        there", rounded(*.time, TIME), rounded(.lengths[0], 4), rounded(.lengths[1], 4), 100.0 * share)]
     BeyondEdge {
         /// End of the step \[s\].
         time: f64,
@@ -70,7 +79,8 @@ pub enum AdhesionError {
     },
 
     /// The passes of a step have not found its state.
-    #[error("at t = {} s {passes} passes left a change of the traction of {change:.1e} of its greatest, where {tolerance:.1e} is allowed: take a shorter step", rounded(*.time, TIME))]
+    #[error("at t = {} s {passes} passes left a change of the traction of {change:.1e} of its greatest, where \
+        {tolerance:.1e} is allowed: take a shorter step", rounded(*.time, TIME))]
     NotConverged {
         /// End of the step \[s\].
         time: f64,

@@ -28,7 +28,8 @@ pub enum CheckpointError {
 
     /// It was written by an older version of this crate.
     #[error(
-        "the checkpoint is of format {found}, this version reads format {known}: resume it with the version that wrote it"
+        "the checkpoint is of format {found}, this version reads format {known}: resume it with the version that \
+        wrote it"
     )]
     Older {
         /// Format of the checkpoint.
@@ -64,7 +65,8 @@ pub enum CheckpointError {
 
     /// The checkpoint is of another scene than the contact that is to resume it.
     #[error(
-        "the checkpoint is of another scene: its {what} is {saved}, but the contact has {built}: build the contact as it was saved"
+        "the checkpoint is of another scene: its {what} is {saved}, but the contact has {built}: build the \
+        contact as it was saved"
     )]
     OtherScene {
         /// What differs.

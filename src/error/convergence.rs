@@ -11,8 +11,8 @@ const STALLED: f64 = 1e-3;
 /// Fewer residuals show no trend.
 const FEWEST: usize = 4;
 
-/// The residual history of a solve that did not converge, part of [`StepError::NotConverged`](crate::contact::StepError::NotConverged).
-/// Its `Display` suggests a remedy.
+/// The residual history of a solve that did not converge, part of
+/// [`StepError::NotConverged`](crate::contact::StepError::NotConverged). Its `Display` suggests a remedy.
 ///
 /// ```
 /// use viscocontact::prelude::*;
@@ -117,7 +117,8 @@ impl fmt::Display for Convergence {
             }
             (Trend::Rounding, _) => write!(
                 f,
-                "the residual stagnates at {lowest:.1e}, the level of rounding: raise Settings::tolerance above that, or bring the scales of the scene closer together (a grid not much larger than the contact)"
+                "the residual stagnates at {lowest:.1e}, the level of rounding: raise Settings::tolerance above \
+                that, or bring the scales of the scene closer together (a grid not much larger than the contact)"
             ),
             // of a body alone, not of a step
             (Trend::Stalled, false) if self.samples.is_empty() => f.write_str(

@@ -108,7 +108,8 @@ not_covered! {
         SteadyMotion: "make it by Material::incompressible or Material::constant_poisson";
     OTHER_BASE: "a base of another ratio than the layer's", SteadyMotion: LAYER;
     SPRING: "a body on a spring", SteadyMotion: "give the force or the approach";
-    NEAR_DATUM: "a line load of given approach whose datum is nearer than the grid and the longest memory of the motion",
+    NEAR_DATUM: "a line load of given approach whose datum is nearer than the grid and the longest memory of the \
+        motion",
         SteadyMotion: "give the force, or a datum farther away";
     OBLIQUE: "a motion that follows neither x1 nor x2, over a body that is not periodic along both,",
         SteadyMotion: "turn the shape instead";

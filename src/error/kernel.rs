@@ -5,7 +5,8 @@ use crate::rounded::rounded;
 #[non_exhaustive]
 pub enum KernelError {
     /// The [`InfluenceKernel`](crate::InfluenceKernel) was made for another grid than the contact's.
-    #[error("the kernel was made for {} × {} cells of {} m × {} m, the contact has {} × {} of {} m × {} m: make it for the grid of the contact",
+    #[error("the kernel was made for {} × {} cells of {} m × {} m, the contact has {} × {} of {} m × {} m: make \
+        it for the grid of the contact",
         .kernel.0[0], .kernel.0[1], rounded(.kernel.1[0], 5), rounded(.kernel.1[1], 5),
         .contact.0[0], .contact.0[1], rounded(.contact.1[0], 5), rounded(.contact.1[1], 5))]
     WrongGrid {
@@ -16,7 +17,8 @@ pub enum KernelError {
     },
 
     /// No two cells of the grid are so far apart as the offset of an influence coefficient.
-    #[error("offset ({}, {}) in cells is not allowed: it must be in (-{}, {}) along x1 and (-{}, {}) along x2, the grid having {} × {} cells",
+    #[error("offset ({}, {}) in cells is not allowed: it must be in (-{}, {}) along x1 and (-{}, {}) along x2, \
+        the grid having {} × {} cells",
         .offset[0], .offset[1], .cells[0], .cells[0], .cells[1], .cells[1], .cells[0], .cells[1])]
     OffsetOutsideGrid {
         /// The offset along x1 and x2, in cells.
@@ -38,10 +40,11 @@ pub enum KernelError {
         allowed: &'static str,
     },
 
-    /// The material of a contact on a [`Layer`](crate::Layer) is not the material of the layer. Kernel and material must have
-    /// the same Poisson's ratio at all times; a layer on a creeping body, or against one, is not modelled.
+    /// The material of a contact on a [`Layer`](crate::Layer) is not the material of the layer. Kernel and material
+    /// must have the same Poisson's ratio at all times; a layer on a creeping body, or against one, is not modelled.
     #[error(
-        "the layer was made for a Poisson's ratio of {layer} at all times, and {what}: give both one ratio (a layer takes its thickness first, then the ratio), and no body that deforms against it"
+        "the layer was made for a Poisson's ratio of {layer} at all times, and {what}: give both one ratio (a \
+        layer takes its thickness first, then the ratio), and no body that deforms against it"
     )]
     LayerMaterial {
         /// Poisson's ratio of the layer.
@@ -50,8 +53,8 @@ pub enum KernelError {
         what: String,
     },
 
-    /// The datum of a line contact on a [`Layer`](crate::Layer), or of one periodic along one axis: a rigid base has none, a
-    /// half-space needs one.
+    /// The datum of a line contact on a [`Layer`](crate::Layer), or of one periodic along one axis: a rigid base has
+    /// none, a half-space needs one.
     #[error("the datum of a load along a line on a layer is {}: it must be {allowed}", metres(*datum))]
     LayerDatum {
         /// The datum given \[m\].
@@ -63,7 +66,8 @@ pub enum KernelError {
     /// The operator of these influence coefficients is not positive definite: no contact on such a body is stable.
     /// Check the sign of the coefficients, and that near cells influence each other more than distant ones.
     #[error(
-        "the influence coefficients are not positive definite: the least eigenvalue found is {} m, the greatest {} m; check their signs, and that near cells influence each other more than distant ones",
+        "the influence coefficients are not positive definite: the least eigenvalue found is {} m, the greatest \
+        {} m; check their signs, and that near cells influence each other more than distant ones",
         rounded(*.least, 3), rounded(*.most, 3)
     )]
     NotPositiveDefinite {
@@ -73,9 +77,9 @@ pub enum KernelError {
         most: f64,
     },
 
-    /// The stress below the surface can be computed for half-spaces, half-spaces periodic along both axes, and line contacts.
-    /// It cannot be computed for a body given by the influence on its surface, nor for a body periodic along one axis with
-    /// more than one cell along it.
+    /// The stress below the surface can be computed for half-spaces, half-spaces periodic along both axes, and line
+    /// contacts. It cannot be computed for a body given by the influence on its surface, nor for a body periodic
+    /// along one axis with more than one cell along it.
     #[error("the stress below the surface is not known of this body ({body}): it must be {allowed}")]
     NoStress {
         /// The kernel, as its `Display` prints it.

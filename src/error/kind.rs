@@ -2,7 +2,8 @@
 
 use crate::error::{AdhesionError, Error, KernelError, MapError, MaterialError, SlidingError, StatesError, StepError};
 
-/// What sort of failure an [`Error`] is, for programs that map errors to others. The error itself tells field, value and cure.
+/// What sort of failure an [`Error`] is, for programs that map errors to others. The error itself tells field, value
+/// and cure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum ErrorKind {

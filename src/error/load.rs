@@ -6,7 +6,8 @@ use crate::rounded::{TIME, rounded};
 pub enum LoadError {
     /// Two loads of a history cannot be interpolated because they control different quantities.
     #[error(
-        "the {field} mixes loads of different kinds ({first}; {second}), which cannot be interpolated: take loads of one kind, and a run for each kind"
+        "the {field} mixes loads of different kinds ({first}; {second}), which cannot be interpolated: take loads \
+        of one kind, and a run for each kind"
     )]
     MixedKinds {
         /// Which history or table.
@@ -31,7 +32,8 @@ pub enum LoadError {
     /// A load history returned a breakpoint that is not later than the requested time
     /// ([`LoadHistory::next_breakpoint`](crate::load::LoadHistory::next_breakpoint)).
     #[error(
-        "the load history returned {breakpoint} s as the first breakpoint after t = {after} s: it must be later; compare times with the breakpoints themselves (guide::own_models)"
+        "the load history returned {breakpoint} s as the first breakpoint after t = {after} s: it must be later; \
+        compare times with the breakpoints themselves (guide::own_models)"
     )]
     InvalidBreakpoint {
         /// The time asked for \[s\].

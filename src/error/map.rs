@@ -7,7 +7,8 @@ use crate::rounded::rounded;
 pub enum MapError {
     /// A height is infinite, or beyond ±1e300 m.
     #[error(
-        "height {entry} of the map is {value:?}: heights must be finite and within ±1e300 m, or NaN where nothing was measured"
+        "height {entry} of the map is {value:?}: heights must be finite and within ±1e300 m, or NaN where nothing \
+        was measured"
     )]
     NotFinite {
         /// Index of the height.
@@ -22,7 +23,9 @@ pub enum MapError {
 
     /// The shortest wavelength of a rough surface is below two cells of its grid.
     #[error(
-        "shortest wavelength = {} m is not allowed: it must be at least two cells of the grid, which are {} m along {axis}: take a longer wavelength, or {cells} cells along {axis}", rounded(*.shortest, 4), rounded(*.least, 4)
+        "shortest wavelength = {} m is not allowed: it must be at least two cells of the grid, which are {} m \
+        along {axis}: take a longer wavelength, or {cells} cells along \
+        {axis}", rounded(*.shortest, 4), rounded(*.least, 4)
     )]
     TooFine {
         /// The shortest wavelength \[m\].
@@ -46,7 +49,8 @@ pub enum MapError {
     /// The interpolation of the missing heights did not converge to rounding: the known heights differ too much, or are
     /// too few.
     #[error(
-        "the interpolation of the missing heights did not converge in {iterations} iterations: the residual is {residual:.1e} m; crop the part without heights"
+        "the interpolation of the missing heights did not converge in {iterations} iterations: the residual is \
+        {residual:.1e} m; crop the part without heights"
     )]
     NotFilled {
         /// Iterations done.
@@ -70,7 +74,9 @@ pub enum MapError {
     /// by [`from_npy`](crate::geometry::HeightMap), [`from_text`](crate::geometry::HeightMap::from_text) and
     /// [`from_xyz`](crate::geometry::HeightMap::from_xyz), which take them as arguments.
     #[error(
-        "{file}: the extension must be {known}; other formats do not store the side lengths of a map: use HeightMap::from_npy, from_text or from_xyz; instrument formats (.opd, .ibw, .spm, .tif) are exported as GSF by Gwyddion"
+        "{file}: the extension must be {known}; other formats do not store the side lengths of a map: use \
+        HeightMap::from_npy, from_text or from_xyz; instrument formats (.opd, .ibw, .spm, .tif) are exported as \
+        GSF by Gwyddion"
     )]
     Extension {
         /// The name of the file.
@@ -81,7 +87,8 @@ pub enum MapError {
 
     /// The file does not begin with the magic number of its format.
     #[error(
-        "not a {format} file: it does not begin with {magic} and the line end of its format; export it anew, or as GSF by Gwyddion"
+        "not a {format} file: it does not begin with {magic} and the line end of its format; export it anew, or \
+        as GSF by Gwyddion"
     )]
     Magic {
         /// The format.
@@ -145,7 +152,9 @@ pub enum MapError {
     },
 
     /// A point is not on the regular grid of the other points.
-    #[error("line {line}: {axis} = {} m is {:.2} spacings of {} m off the regular grid of the points; {:.3} are allowed: interpolate the points on a regular grid", rounded(*.value, 5), .off, rounded(*.spacing, 4), .allowed)]
+    #[error("line {line}: {axis} = {} m is {:.2} spacings of {} m off the regular grid of the points; {:.3} are \
+        allowed: interpolate the points on a regular \
+        grid", rounded(*.value, 5), .off, rounded(*.spacing, 4), .allowed)]
     OffGrid {
         /// The line, from 1.
         line: u64,
@@ -173,7 +182,8 @@ pub enum MapError {
     },
 
     /// The points of a file cover too little of the regular grid that their spacing suggests: they are scattered.
-    #[error("{points} points are too few for the regular grid of {} x {} that their distances suggest: interpolate scattered points on a regular grid", .cells[0], .cells[1])]
+    #[error("{points} points are too few for the regular grid of {} x {} that their distances suggest: \
+        interpolate scattered points on a regular grid", .cells[0], .cells[1])]
     Sparse {
         /// Number of points.
         points: usize,
@@ -192,7 +202,8 @@ pub enum MapError {
 
     /// Some heights of a text look like a number for points that were not measured: they are far from all others.
     #[error(
-        "{count} of the heights are {value}, far from all others: state TextFormat::with_missing_height({value}) if nothing was measured there, or with_missing_height(f64::NAN) if it was"
+        "{count} of the heights are {value}, far from all others: state TextFormat::with_missing_height({value}) \
+        if nothing was measured there, or with_missing_height(f64::NAN) if it was"
     )]
     StandIn {
         /// The height, in the unit of the file.
@@ -203,7 +214,8 @@ pub enum MapError {
 
     /// A heading names another unit than the one given.
     #[error(
-        "column {column}: the heading {heading:?} names another unit than {given}, which was given: give that of the heading"
+        "column {column}: the heading {heading:?} names another unit than {given}, which was given: give that of \
+        the heading"
     )]
     OtherUnit {
         /// The column, from 1.

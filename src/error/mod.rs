@@ -103,11 +103,13 @@ pub enum Error {
         allowed: &'static str,
     },
 
-    /// More memory is needed than is available, or than can be addressed. Take fewer cells; a contact computes fewer of them by
+    /// More memory is needed than is available, or than can be addressed. Take fewer cells; a contact computes fewer
+    /// of them by
     /// [`Settings::symmetry`](crate::contact::Settings::symmetry) and
     /// [`Settings::window`](crate::contact::Settings::window). [`Builder::memory`](crate::contact::Builder::memory)
     /// reports the need of a contact before it is built.
-    #[error("{what} needs {bytes} bytes ({:.1} GB), more than is available: take fewer cells; a contact computes fewer of them with Settings::symmetry and Settings::window", *.bytes as f64 * 1e-9)]
+    #[error("{what} needs {bytes} bytes ({:.1} GB), more than is available: take fewer cells; a contact computes \
+        fewer of them with Settings::symmetry and Settings::window", *.bytes as f64 * 1e-9)]
     OutOfMemory {
         /// What needs it.
         what: &'static str,
@@ -115,8 +117,8 @@ pub enum Error {
         bytes: u64,
     },
 
-    /// A slice or table has the wrong length: a field needs one value per cell, a table enough to define a function, a step
-    /// one load for each rigid body.
+    /// A slice or table has the wrong length: a field needs one value per cell, a table enough to define a function,
+    /// a step one load for each rigid body.
     #[error("{field}: {len} given, {}{expected} needed", if *.exact { "" } else { "at least " })]
     WrongLength {
         /// Which slice or table.
@@ -149,7 +151,9 @@ pub enum Error {
     Load(#[from] LoadError),
 
     /// A geometry returned NaN or −∞ for the gap of a cell; a gap must be finite, or +∞ where there is no body.
-    #[error("the initial gap at cell [{}, {}], x = ({}, {}) m, is {value}: it must be finite, or +inf where there is no body; points of a map that were not measured are filled by HeightMap::filled or left out by HeightMap::masked", .cell[0], .cell[1], rounded(.position[0], 4), rounded(.position[1], 4))]
+    #[error("the initial gap at cell [{}, {}], x = ({}, {}) m, is {value}: it must be finite, or +inf where there \
+        is no body; points of a map that were not measured are filled by HeightMap::filled or left out by \
+        HeightMap::masked", .cell[0], .cell[1], rounded(.position[0], 4), rounded(.position[1], 4))]
     InvalidGap {
         /// Indices of the cell.
         cell: [usize; 2],
@@ -162,7 +166,8 @@ pub enum Error {
     /// A body can touch nothing: its gap is +∞ on every cell of the grid, or it is above another body everywhere.
     /// Compare its position and size with [`Grid::lengths`](crate::Grid::lengths).
     #[error(
-        "body {body} is the lowest body with a finite gap on none of the {cells} cells of the grid: it can touch nothing; compare its position and size with Grid::lengths"
+        "body {body} is the lowest body with a finite gap on none of the {cells} cells of the grid: it can touch \
+        nothing; compare its position and size with Grid::lengths"
     )]
     NothingToTouch {
         /// Index of the body.
@@ -245,7 +250,8 @@ pub enum Error {
 
     /// A [`Study`](crate::study::Study) found no domain that holds the contact: none is large enough.
     #[error(
-        "no domain was found that holds the contact (the last one tried was {length:.1e} m wide): check geometry and load"
+        "no domain was found that holds the contact (the last one tried was {length:.1e} m wide): check geometry \
+        and load"
     )]
     NoDomain {
         /// Side of the last domain tried \[m\].

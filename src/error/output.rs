@@ -7,7 +7,8 @@ use super::{Error, FileError, MapError};
 
 /// A file or folder of results that cannot be written, and why.
 ///
-/// The cause is the [`source`](std::error::Error::source) of the error, an [`io::Error`]: the message names the path alone.
+/// The cause is the [`source`](std::error::Error::source) of the error, an [`io::Error`]: the message names the path
+/// alone.
 ///
 /// ```
 /// use std::io::ErrorKind;
@@ -73,7 +74,8 @@ impl PartialEq for OutputError {
 }
 
 impl Error {
-    /// The kind of the system's error behind this one: of a file that could not be read or written. `None` of all others.
+    /// The kind of the system's error behind this one: of a file that could not be read or written. `None` of all
+    /// others.
     ///
     /// ```
     /// use std::io::ErrorKind;

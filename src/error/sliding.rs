@@ -19,9 +19,11 @@ pub enum SlidingError {
         compliance: [f64; 2],
     },
 
-    /// Rounding of the displacement exceeds the tolerance: bodies whose compliance at rest and in motion differ by many orders of magnitude
-    /// are pressed so hard by the stiff waves that the soft ones are rounding.
-    #[error("at a velocity of ({}, {}) m/s the rounding of the displacement is {rounding:.1e} of the gap that the contact closes, where {tolerance:.1e} is allowed: take a lower velocity, bodies that creep less, or a greater Settings::tolerance",
+    /// Rounding of the displacement exceeds the tolerance: bodies whose compliance at rest and in motion differ by
+    /// many orders of magnitude are pressed so hard by the stiff waves that the soft ones are rounding.
+    #[error("at a velocity of ({}, {}) m/s the rounding of the displacement is {rounding:.1e} of the gap that the \
+        contact closes, where {tolerance:.1e} is allowed: take a lower velocity, bodies that creep less, or a \
+        greater Settings::tolerance",
         rounded(.velocity[0], 5), rounded(.velocity[1], 5))]
     Rounding {
         /// Velocity \[m/s\].
@@ -61,7 +63,8 @@ pub enum SlidingError {
     },
 
     /// The contact at a velocity was not found.
-    #[error("at a velocity of ({}, {}) m/s {sets} sets of cells left a residual of {residual:.1e}, where {tolerance:.1e} is allowed: come from a velocity nearby, or allow a greater Settings::tolerance",
+    #[error("at a velocity of ({}, {}) m/s {sets} sets of cells left a residual of {residual:.1e}, where \
+        {tolerance:.1e} is allowed: come from a velocity nearby, or allow a greater Settings::tolerance",
         rounded(.velocity[0], 5), rounded(.velocity[1], 5))]
     NotConverged {
         /// Velocity \[m/s\].

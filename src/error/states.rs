@@ -4,10 +4,12 @@ use crate::rounded::{TIME, rounded};
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StatesError {
-    /// The pressure of an elastic contact falls somewhere while its load grows, so that its states are no family of contacts that only
-    /// grow. [`ViscoelasticContact`](crate::ViscoelasticContact) computes such a scene.
+    /// The pressure of an elastic contact falls somewhere while its load grows, so that its states are no family of
+    /// contacts that only grow. [`ViscoelasticContact`](crate::ViscoelasticContact) computes such a scene.
     #[error(
-        "between the levels {} and {} m² the pressure of the elastic contact falls by {} of the greatest pressure somewhere, where at most {} is rounding: its elastic states do not superpose; step it with ViscoelasticContact",
+        "between the levels {} and {} m² the pressure of the elastic contact falls by {} of the greatest pressure \
+        somewhere, where at most {} is rounding: its elastic states do not superpose; step it with \
+        ViscoelasticContact",
         rounded(.levels[0], 3), rounded(.levels[1], 3), rounded(*.fall, 3), rounded(*.allowed, 3)
     )]
     Shrinks {
@@ -20,7 +22,8 @@ pub enum StatesError {
     },
 
     /// The contact needs a state beyond the last one of the sweep.
-    #[error("at t = {} s the contact needs {needed}, beyond the last elastic state at {}: sweep further (states::Reach)", rounded(*.time, TIME), rounded(*.last, TIME))]
+    #[error("at t = {} s the contact needs {needed}, beyond the last elastic state at {}: sweep further \
+        (states::Reach)", rounded(*.time, TIME), rounded(*.last, TIME))]
     Beyond {
         /// End of the step \[s\].
         time: f64,
@@ -31,7 +34,8 @@ pub enum StatesError {
     },
 
     /// The contact needs a level below the first from which the elastic contact only grows.
-    #[error("at t = {} s the contact needs the level {level:.3e} m², below {first:.3e} m², from which the pressure of the elastic contact falls nowhere: step it with ViscoelasticContact", rounded(*.time, TIME))]
+    #[error("at t = {} s the contact needs the level {level:.3e} m², below {first:.3e} m², from which the \
+        pressure of the elastic contact falls nowhere: step it with ViscoelasticContact", rounded(*.time, TIME))]
     Below {
         /// End of the step \[s\].
         time: f64,
@@ -44,7 +48,8 @@ pub enum StatesError {
     /// The tilts of a load are not those of the sweep: a load point that moves and tilts that change are not covered.
     /// [`ViscoelasticContact`](crate::ViscoelasticContact) computes them.
     #[error(
-        "the states were swept for {swept}, and {given} was given: a load point or a prescribed tilt that changes is no superposition of elastic states; step it with ViscoelasticContact"
+        "the states were swept for {swept}, and {given} was given: a load point or a prescribed tilt that changes \
+        is no superposition of elastic states; step it with ViscoelasticContact"
     )]
     OtherTilt {
         /// The tilts of the sweep, in words.
@@ -62,7 +67,8 @@ pub enum StatesError {
     NoScene,
 
     /// A group of levels left 0 ≤ W ≤ 1, or pulls: the levels are not in order, and the superposition is not proved.
-    #[error("at t = {} s the elastic states do not superpose: a share that must be in [0, 1] is {}; take a shorter step, or step the scene with ViscoelasticContact", rounded(*.time, TIME), rounded(*.displacement, 5))]
+    #[error("at t = {} s the elastic states do not superpose: a share that must be in [0, 1] is {}; take a \
+        shorter step, or step the scene with ViscoelasticContact", rounded(*.time, TIME), rounded(*.displacement, 5))]
     OutOfOrder {
         /// End of the step \[s\].
         time: f64,

@@ -7,7 +7,8 @@ use crate::rounded::{TIME, rounded};
 #[non_exhaustive]
 pub enum StepError {
     /// A load tilts a body along an axis along which the bodies are periodic.
-    #[error("at t = {time} s the load tilts the body along {axis}, along which the bodies are periodic: prescribe no tilt there, or take a body that is not periodic", time = rounded(*.time, TIME))]
+    #[error("at t = {time} s the load tilts the body along {axis}, along which the bodies are periodic: prescribe \
+        no tilt there, or take a body that is not periodic", time = rounded(*.time, TIME))]
     TiltOfPeriodic {
         /// End of the step \[s\].
         time: f64,
@@ -16,7 +17,9 @@ pub enum StepError {
     },
 
     /// A force acts outside the convex hull of the cells that the body may touch, so that no pressure balances it.
-    #[error("at t = {time} s the load acts at ({}, {}) m, outside the convex hull of the cells that body {body} may touch: it would tip over; move it inside, or prescribe the tilt", rounded(.at[0], 4), rounded(.at[1], 4), time = rounded(*.time, TIME))]
+    #[error("at t = {time} s the load acts at ({}, {}) m, outside the convex hull of the cells that body {body} \
+        may touch: it would tip over; move it inside, or prescribe the \
+        tilt", rounded(.at[0], 4), rounded(.at[1], 4), time = rounded(*.time, TIME))]
     LoadOutsideHull {
         /// End of the step \[s\].
         time: f64,
@@ -30,7 +33,9 @@ pub enum StepError {
     /// Enlarge the grid, or choose [`Edge::Allow`](crate::contact::Edge::Allow) if the body really ends at the edge of
     /// the grid.
     #[error(
-        "at t = {time} s the contact touches the edge of the grid on {cells} cells; {}: enlarge the grid, give a surface that repeats a periodic body (InfluenceKernel::periodic), or set Settings::edge to Edge::Allow if the body ends there", widths(*.lengths, *.needed), time = rounded(*.time, TIME))]
+        "at t = {time} s the contact touches the edge of the grid on {cells} cells; {}: enlarge the grid, give a \
+        surface that repeats a periodic body (InfluenceKernel::periodic), or set Settings::edge to Edge::Allow if \
+        the body ends there", widths(*.lengths, *.needed), time = rounded(*.time, TIME))]
     ContactAtEdge {
         /// End of the step \[s\].
         time: f64,
@@ -45,7 +50,9 @@ pub enum StepError {
     /// An approach exceeds the approach of full contact on a surface whose mean displacement is fixed
     /// ([`InfluenceKernel::periodic`](crate::InfluenceKernel::periodic)): no pressure closes the gap further.
     #[error(
-        "at t = {time} s the approach {} m is not below {} m, that of full contact, which no pressure can exceed on a periodic body: prescribe the force", rounded(*.approach, 5), rounded(*.greatest, 5), time = rounded(*.time, TIME))]
+        "at t = {time} s the approach {} m is not below {} m, that of full contact, which no pressure can exceed \
+        on a periodic body: prescribe the \
+        force", rounded(*.approach, 5), rounded(*.greatest, 5), time = rounded(*.time, TIME))]
     BeyondFullContact {
         /// End of the step \[s\].
         time: f64,
@@ -55,10 +62,13 @@ pub enum StepError {
         greatest: f64,
     },
 
-    /// The bodies are pressed into a layer on a rigid base by its whole thickness or more: the base would be touched, and strains are far
-    /// from small. Press less, or check that lengths are in m, and that the thickness of the [`Layer`](crate::Layer) comes before Poisson's ratio.
+    /// The bodies are pressed into a layer on a rigid base by its whole thickness or more: the base would be touched,
+    /// and strains are far from small. Press less, or check that lengths are in m, and that the thickness of the
+    /// [`Layer`](crate::Layer) comes before Poisson's ratio.
     #[error(
-        "at t = {time} s the bodies are pressed {} m deep into a layer {} m thick, through its base: press less (a fifth of the thickness is warned of), or check the thickness, which is in m", rounded(*.depth, 4), rounded(*.thickness, 5), time = rounded(*.time, TIME))]
+        "at t = {time} s the bodies are pressed {} m deep into a layer {} m thick, through its base: press less \
+        (a fifth of the thickness is warned of), or check the thickness, which is in \
+        m", rounded(*.depth, 4), rounded(*.thickness, 5), time = rounded(*.time, TIME))]
     ThroughLayer {
         /// End of the step \[s\].
         time: f64,
@@ -72,7 +82,9 @@ pub enum StepError {
     /// series was fitted over. Give [`Builder::times`](crate::contact::Builder::times) a longer range, or extrapolate
     /// the table.
     #[error(
-        "at t = {time} s the loading time {age} s exceeds the range in which the material is known, {known_until} s: fit its series over longer times (Builder::times), or extrapolate its table (CreepSeries::extrapolated)", time = rounded(*.time, TIME), age = rounded(*.age, TIME))]
+        "at t = {time} s the loading time {age} s exceeds the range in which the material is known, {known_until} \
+        s: fit its series over longer times (Builder::times), or extrapolate its table \
+        (CreepSeries::extrapolated)", time = rounded(*.time, TIME), age = rounded(*.age, TIME))]
     BeyondMaterial {
         /// End of the step \[s\].
         time: f64,
@@ -86,7 +98,8 @@ pub enum StepError {
     /// length zero, unless the jump removes the load or the present state already satisfies it; nor is the paper's
     /// rectangle rule possible. Ramp the load over a short time, or give the body a glassy compliance.
     #[error(
-        "at t = {time} s: {what} needs an elastic response, but the material has none (its compliance at t = 0 is zero); ramp the load over a short time or add a glassy compliance", time = rounded(*.time, TIME))]
+        "at t = {time} s: {what} needs an elastic response, but the material has none (its compliance at t = 0 is \
+        zero); ramp the load over a short time or add a glassy compliance", time = rounded(*.time, TIME))]
     NoElasticResponse {
         /// Time of the contact \[s\].
         time: f64,
@@ -97,7 +110,9 @@ pub enum StepError {
     /// The history of a direct sum would exceed [`Settings::history_limit`](crate::contact::Settings). Raise the limit,
     /// or use [`TimeRule::Exponential`](crate::contact::TimeRule::Exponential), whose memory does not grow.
     #[error(
-        "at t = {time} s the direct sum over {steps} past steps would take {bytes} bytes, more than Settings::history_limit = {limit}: raise it, or use TimeRule::Exponential, whose memory does not grow", time = rounded(*.time, TIME))]
+        "at t = {time} s the direct sum over {steps} past steps would take {bytes} bytes, more than \
+        Settings::history_limit = {limit}: raise it, or use TimeRule::Exponential, whose memory does not \
+        grow", time = rounded(*.time, TIME))]
     HistoryFull {
         /// End of the step \[s\].
         time: f64,
@@ -112,7 +127,8 @@ pub enum StepError {
     /// The solver did not converge within [`Settings::max_iterations`](crate::contact::Settings::max_iterations); the
     /// residual history suggests a remedy.
     #[error(
-        "at t = {time} s (step of {dt} s): residual {residual:.2e} after {iterations} iterations, above the tolerance {tolerance:e}; {convergence}", time = rounded(*.time, TIME), dt = rounded(*.dt, TIME))]
+        "at t = {time} s (step of {dt} s): residual {residual:.2e} after {iterations} iterations, above the \
+        tolerance {tolerance:e}; {convergence}", time = rounded(*.time, TIME), dt = rounded(*.dt, TIME))]
     NotConverged {
         /// End of the step \[s\].
         time: f64,
@@ -131,7 +147,9 @@ pub enum StepError {
     /// The allowed error in time needs a step below the resolution of `f64` at this time: the load changes too fast, or
     /// the tolerance is too small.
     #[error(
-        "at t = {time} s no step that f64 resolves keeps the error in time below {tolerance:e}: name the time of a jump inside a closure with FnHistory::with_breakpoints, ramp the load, allow a greater error, or approach a body that resists rates alone by a spring", time = rounded(*.time, TIME))]
+        "at t = {time} s no step that f64 resolves keeps the error in time below {tolerance:e}: name the time of \
+        a jump inside a closure with FnHistory::with_breakpoints, ramp the load, allow a greater error, or \
+        approach a body that resists rates alone by a spring", time = rounded(*.time, TIME))]
     StepTooShort {
         /// Time of the contact \[s\].
         time: f64,
@@ -142,7 +160,8 @@ pub enum StepError {
     },
 
     /// A quantity overflowed in a step: the scales of lengths, moduli, loads and times are too far apart for `f64`.
-    #[error("at t = {time} s: {what} is not finite; the scales of the scene are too far apart for f64; check their units", time = rounded(*.time, TIME))]
+    #[error("at t = {time} s: {what} is not finite; the scales of the scene are too far apart for f64; check \
+        their units", time = rounded(*.time, TIME))]
     Overflow {
         /// End of the step \[s\].
         time: f64,
@@ -151,7 +170,8 @@ pub enum StepError {
     },
 
     /// The load of a steady motion brings no cell into contact.
-    #[error("at t = {time} s the load brings no cell into contact: a steady motion needs contact, a force or a greater approach", time = rounded(*.time, TIME))]
+    #[error("at t = {time} s the load brings no cell into contact: a steady motion needs contact, a force or a \
+        greater approach", time = rounded(*.time, TIME))]
     NoContact {
         /// Time of the contact \[s\].
         time: f64,

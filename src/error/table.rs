@@ -25,8 +25,8 @@ impl fmt::Display for Place {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TableError {
-    /// A value is outside its range, or not finite. Remove a first row of zeros, recorded before the load: it is not part
-    /// of the creep.
+    /// A value is outside its range, or not finite. Remove a first row of zeros, recorded before the load: it is not
+    /// part of the creep.
     #[error(
         "{table}, {place}: {column} = {value:?} is not allowed: it must be {allowed}; leave out rows without a value"
     )]
@@ -45,7 +45,8 @@ pub enum TableError {
 
     /// Two values are given for the same time or frequency: average them, or keep one.
     #[error(
-        "{table}: {place} and {earlier} give two values for {column} = {value}: give their mean, or read several temperatures as isotherms (Isotherm::from_csv_reader)"
+        "{table}: {place} and {earlier} give two values for {column} = {value}: give their mean, or read several \
+        temperatures as isotherms (Isotherm::from_csv_reader)"
     )]
     Duplicate {
         /// Which table.
@@ -99,7 +100,8 @@ pub enum TableError {
     /// A heading names a unit other than [`Units`](crate::rheology::Units) gives, an unknown unit, or logarithms:
     /// correct the heading or the units.
     #[error(
-        "line {line}, column {column}: the heading {heading:?} says {unit}, but Units::{field} = {given} means {expected}{}",
+        "line {line}, column {column}: the heading {heading:?} says {unit}, but Units::{field} = {given} means \
+        {expected}{}",
         .size.map(|size| format!("; of {unit} it is {}", rounded(size, 5))).unwrap_or_default()
     )]
     Unit {
@@ -123,15 +125,16 @@ pub enum TableError {
 
     /// The headings of a dynamic table name a storage modulus, but neither a loss modulus nor a phase angle or tan δ.
     #[error(
-        "line {line}: the headings name a storage modulus, but no loss modulus, phase angle or loss factor (tan): name it, or read the table as Experiment::Storage"
+        "line {line}: the headings name a storage modulus, but no loss modulus, phase angle or loss factor (tan): \
+        name it, or read the table as Experiment::Storage"
     )]
     StorageOnly {
         /// The line of the headings.
         line: u64,
     },
 
-    /// The headings of a file name moduli in tension (D, E, E′, E″), and it was to be fitted in shear, or the reverse. Moduli in
-    /// tension are up to three times those in shear.
+    /// The headings of a file name moduli in tension (D, E, E′, E″), and it was to be fitted in shear, or the
+    /// reverse. Moduli in tension are up to three times those in shear.
     #[error(
         "the headings of the table name {}", if *.in_tension {
             "moduli in tension: use Measurements::fit_tension and Material::from_tension"
@@ -155,7 +158,8 @@ pub enum TableError {
 
     /// An isotherm is constant in time, so that its shift cannot be determined. Use a law
     /// ([`MasterCurve::with_law`](crate::rheology::MasterCurve::with_law)).
-    #[error("one of the isotherms at {} K and {} K is constant in time: its shift cannot be determined; use MasterCurve::with_law", .temperatures[0], .temperatures[1])]
+    #[error("one of the isotherms at {} K and {} K is constant in time: its shift cannot be determined; use \
+        MasterCurve::with_law", .temperatures[0], .temperatures[1])]
     NothingToShift {
         /// The temperatures \[K\].
         temperatures: [f64; 2],
@@ -164,7 +168,8 @@ pub enum TableError {
     /// The ranges of values of two isotherms do not overlap, so that no shift aligns them: measure at a temperature in
     /// between, or shift by a law ([`MasterCurve::with_law`](crate::rheology::MasterCurve::with_law)).
     #[error(
-        "the isotherms at {} K and {} K do not overlap in their values: at the best shift they differ by {:.0} %; measure at a temperature in between, or use MasterCurve::with_law",
+        "the isotherms at {} K and {} K do not overlap in their values: at the best shift they differ by {:.0} %; \
+        measure at a temperature in between, or use MasterCurve::with_law",
         .temperatures[0], .temperatures[1], 100.0 * .apart
     )]
     NoOverlap {

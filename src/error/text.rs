@@ -21,7 +21,8 @@ pub enum TextError {
 
     /// An entry is not a number.
     #[error(
-        "line {line}, column {column}: {text:?} is not a number; leave the line out by # at its beginning or TextFormat::with_skipped_lines, and remove separators of thousands"
+        "line {line}, column {column}: {text:?} is not a number; leave the line out by # at its beginning or \
+        TextFormat::with_skipped_lines, and remove separators of thousands"
     )]
     NotNumeric {
         /// The line, from 1.
@@ -33,10 +34,11 @@ pub enum TextError {
     },
 
     /// An entry has a decimal comma in place of a decimal point, a decimal point in place of a decimal comma, or
-    /// separators of thousands: state [`TextFormat::with_decimal_comma`](crate::TextFormat::with_decimal_comma), or remove the
-    /// separators.
+    /// separators of thousands: state [`TextFormat::with_decimal_comma`](crate::TextFormat::with_decimal_comma), or
+    /// remove the separators.
     #[error(
-        "line {line}, column {column}: {text:?} is not a number with TextFormat::with_decimal_comma = {decimal_comma}: state the other value, or remove separators of thousands"
+        "line {line}, column {column}: {text:?} is not a number with TextFormat::with_decimal_comma = \
+        {decimal_comma}: state the other value, or remove separators of thousands"
     )]
     DecimalMark {
         /// The line, from 1.
@@ -68,7 +70,8 @@ pub enum TextError {
 
     /// A heading has no unit of the quantity of its column, or one of two meanings.
     #[error(
-        "line {line}, column {column}: the heading {heading:?} has no unit of the {quantity}, or an ambiguous one; write it in brackets, as in '[{example}]', or state it (TextTable::with_heading, Units)"
+        "line {line}, column {column}: the heading {heading:?} has no unit of the {quantity}, or an ambiguous \
+        one; write it in brackets, as in '[{example}]', or state it (TextTable::with_heading, Units)"
     )]
     Unit {
         /// The line of the headings, from 1.
@@ -85,7 +88,8 @@ pub enum TextError {
 
     /// Rows of numbers stand before the headings.
     #[error(
-        "line {line} has numbers, but the headings stand in line {headings}: skip the lines before it (TextFormat::with_skipped_lines), or split the file"
+        "line {line} has numbers, but the headings stand in line {headings}: skip the lines before it \
+        (TextFormat::with_skipped_lines), or split the file"
     )]
     Preamble {
         /// The first row of numbers, from 1.

@@ -4,7 +4,8 @@ use std::error::Error as StdError;
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// A load history, a gap or a creep function could not give a value; its own error is the [`source`](std::error::Error::source).
+/// A load history, a gap or a creep function could not give a value; its own error is the
+/// [`source`](std::error::Error::source).
 ///
 /// ```
 /// use std::error::Error as _;
@@ -51,8 +52,8 @@ impl PartialEq for UserError {
     }
 }
 
-/// What `compute` makes of values of a user's function, or the error of the function in this call: `failure` takes it, and one of an earlier
-/// call before.
+/// What `compute` makes of values of a user's function, or the error of the function in this call: `failure` takes
+/// it, and one of an earlier call before.
 pub(crate) fn unless_failed<T>(
     failure: impl Fn() -> Option<UserError>,
     compute: impl FnOnce() -> crate::Result<T>,

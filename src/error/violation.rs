@@ -13,7 +13,8 @@ pub struct Violation {
     pub at: Location,
     /// The value found.
     pub found: f64,
-    /// The value expected; the bound of an inequality. NaN, as the value found, of what is no number: the kind of a load.
+    /// The value expected; the bound of an inequality. NaN, as the value found, of what is no number: the kind of a
+    /// load.
     pub expected: f64,
 }
 

@@ -7,8 +7,8 @@ use crate::fields::{About, Fields, Surface, View};
 use crate::rheology::{Material, TemperatureHistory};
 use crate::solver::RigidMotion;
 
-/// The fields of a contact as they were, made by [`Fields::keep`] and by what finds fields without a contact of their own: about
-/// 24 bytes per computed cell, and the indenter is shared.
+/// The fields of a contact as they were, made by [`Fields::keep`] and by what finds fields without a contact of their
+/// own: about 24 bytes per computed cell, and the indenter is shared.
 #[derive(Debug, Clone)]
 pub struct KeptFields {
     ground: Ground,
@@ -32,7 +32,8 @@ impl KeptFields {
         Fields { ground, held, surface, view, kernel: None, about }
     }
 
-    /// The same with a pressure on the whole grid in the place of its own; `None` where not all of these cells are computed.
+    /// The same with a pressure on the whole grid in the place of its own; `None` where not all of these cells are
+    /// computed.
     pub(crate) fn with_pressure(mut self, pressure: &[f64]) -> Option<KeptFields> {
         let Held { region, current, .. } = &mut self.held;
         let n2 = region.whole.cells()[1];

@@ -9,16 +9,17 @@ use crate::parallel::Rows;
 use crate::{Axis, sum};
 
 impl Fields<'_> {
-    /// The rows (indices along x1) that [`pressure`](Fields::pressure) and all other fields hold: all of the
-    /// grid, unless [`Builder::ranks`](crate::contact::Builder::ranks) share them out. Then they are the rows of this rank, from the upper
-    /// half where the contact is symmetric about x1 = 0, since the other half is not computed; a rank may have no rows.
+    /// The rows (indices along x1) that [`pressure`](Fields::pressure) and all other fields hold: all of the grid,
+    /// unless [`Builder::ranks`](crate::contact::Builder::ranks) share them out. Then they are the rows of this rank,
+    /// from the upper half where the contact is symmetric about x1 = 0, since the other half is not computed; a rank
+    /// may have no rows.
     pub fn rows(&self) -> Range<usize> {
         self.held.region.shown_rows()
     }
 
-    /// Brings a field of own rows, such as [`pressure`](Fields::pressure), to the rank `to`: one value per cell
-    /// of the whole grid there, `None` on all others. A call of all [ranks](crate::parallel). Without ranks there is only
-    /// rank 0, and the field is the whole.
+    /// Brings a field of own rows, such as [`pressure`](Fields::pressure), to the rank `to`: one value per cell of
+    /// the whole grid there, `None` on all others. A call of all [ranks](crate::parallel). Without ranks there is
+    /// only rank 0, and the field is the whole.
     ///
     /// ```
     /// use viscocontact::prelude::*;
@@ -78,7 +79,8 @@ impl Fields<'_> {
         [rows, images]
     }
 
-    /// Σ of the values `found` by all ranks in the rows at their `places`, in the order of the rows. A call of all ranks.
+    /// Σ of the values `found` by all ranks in the rows at their `places`, in the order of the rows. A call of all
+    /// ranks.
     pub(super) fn sum_in_order<const K: usize>(
         &self,
         found: impl Iterator<Item = [f64; K]>,
@@ -101,8 +103,8 @@ impl Fields<'_> {
         })
     }
 
-    /// Σ over all rows of the whole grid, in their order, of what `of_row` finds in the pressure of a row, given its number. A
-    /// call of all ranks.
+    /// Σ over all rows of the whole grid, in their order, of what `of_row` finds in the pressure of a row, given its
+    /// number. A call of all ranks.
     pub(super) fn sum_of_rows<const K: usize>(&self, of_row: impl Fn(usize, &[f64]) -> [f64; K]) -> [f64; K] {
         let ([n1, n2], own, pressure) = (self.grid().cells(), self.rows(), self.pressure());
         let row = |i: usize| &pressure[(i - own.start) * n2..][..n2];

@@ -125,8 +125,8 @@ impl<'a> Fields<'a> {
     /// Composite normal surface displacement, positive into the bodies \[m\], one value per cell (Eq. 10 of the
     /// [paper](crate::paper)); on the local [rows](Fields::rows) where ranks share them out.
     ///
-    /// With [`Settings::window`](crate::contact::Settings::window) the first call after a step costs a convolution on the whole grid, and memory for its
-    /// result.
+    /// With [`Settings::window`](crate::contact::Settings::window) the first call after a step costs a convolution on
+    /// the whole grid, and memory for its result.
     pub fn displacement(&self) -> &'a [f64] {
         self.view.displacement(self.ground, &self.held.region, self.surface)
     }
@@ -165,8 +165,8 @@ impl<'a> Fields<'a> {
     }
 
     /// Whether the bodies are apart: no cell is in contact, and where surfaces attract each other
-    /// ([`Builder::attraction`](crate::contact::Builder::attraction)) 99 % of the work of separation is done at the narrowest gap.
-    /// Surfaces without a cell in contact still pull.
+    /// ([`Builder::attraction`](crate::contact::Builder::attraction)) 99 % of the work of separation is done at the
+    /// narrowest gap. Surfaces without a cell in contact still pull.
     pub fn is_separated(&self) -> bool {
         let far = |law: &Arc<dyn Attraction>| {
             let narrowest = self.gap().map(|gap| gap.into_iter().fold(f64::INFINITY, f64::min).max(0.0));
@@ -201,7 +201,8 @@ impl<'a> Fields<'a> {
         matches!(self.held.loads[body], Load::Approach { .. })
     }
 
-    /// Total normal force Σ p ΔA on all bodies \[N\], Eq. 4 of the [paper](crate::paper); < 0 where attraction pulls harder than the wall presses.
+    /// Total normal force Σ p ΔA on all bodies \[N\], Eq. 4 of the [paper](crate::paper); < 0 where attraction pulls
+    /// harder than the wall presses.
     pub fn force(&self) -> f64 {
         let Held { region, current, .. } = self.held;
         current.sum * region.cell_area()
@@ -236,8 +237,8 @@ impl<'a> Fields<'a> {
         Some(BodyState { approach, tilt, force, moment, contact_cells })
     }
 
-    /// Force, moments and number of cells in contact over the cells for which `counts` holds. Where surfaces attract each other, there is one
-    /// body, and all its cells pull.
+    /// Force, moments and number of cells in contact over the cells for which `counts` holds. Where surfaces attract
+    /// each other, there is one body, and all its cells pull.
     fn sums(&self, counts: impl Fn(usize) -> bool + Sync) -> (f64, [f64; 2], usize) {
         let Held { region, current, .. } = self.held;
         let (grid, pressure, [_, m2]) = (region.grid(), &current.solution.pressure, region.cells());
@@ -272,8 +273,9 @@ impl<'a> Fields<'a> {
         self.ground.attraction.as_deref()
     }
 
-    /// Writes the net traction between the bodies into `out` \[Pa\], one value per cell: the [pressure](Fields::pressure) of the
-    /// wall less the attraction, < 0 where the bodies pull at each other. It carries the force, and displaces the bodies.
+    /// Writes the net traction between the bodies into `out` \[Pa\], one value per cell: the
+    /// [pressure](Fields::pressure) of the wall less the attraction, < 0 where the bodies pull at each other. It
+    /// carries the force, and displaces the bodies.
     ///
     /// # Errors
     /// If `out` does not hold one value per cell.

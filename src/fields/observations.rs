@@ -18,12 +18,13 @@ impl Fields<'_> {
     ///
     /// Near the edge of a smooth contact the pressure rises with the root of the distance, so that p² extrapolates to
     /// the edge within a fraction of a cell. The area is the area of the polygons through these points. Where the
-    /// pressure does not fall towards the edge, or the indenter has no surface beyond it, as at the rim of a punch, the
-    /// contact ends with the cell. Measured on spheres: 2e-3 of the area at 64² cells and 5e-4 at 256², where counting
-    /// cells ([`Fields::contact_cells`]) errs by 1.5e-2 and 4e-3. Where contact grows by creep, the newest
-    /// cells are stiffer than older ones, and the pressure follows the root only within them: then the area errs by up
-    /// to a few per cent at 128² cells. Where surfaces [attract](crate::adhesion) each other, contact is where the wall presses; its pressure
-    /// follows the root within the zone of the attraction, and the area errs by 1.5 % with 6 cells in the zone, and by 0.5 % with 12. A call of all [ranks](crate::parallel) that share out the rows.
+    /// pressure does not fall towards the edge, or the indenter has no surface beyond it, as at the rim of a punch,
+    /// the contact ends with the cell. Measured on spheres: 2e-3 of the area at 64² cells and 5e-4 at 256², where
+    /// counting cells ([`Fields::contact_cells`]) errs by 1.5e-2 and 4e-3. Where contact grows by creep, the newest
+    /// cells are stiffer than older ones, and the pressure follows the root only within them: then the area errs by
+    /// up to a few per cent at 128² cells. Where surfaces [attract](crate::adhesion) each other, contact is where the
+    /// wall presses; its pressure follows the root within the zone of the attraction, and the area errs by 1.5 % with
+    /// 6 cells in the zone, and by 0.5 % with 12. A call of all [ranks](crate::parallel) that share out the rows.
     pub fn contact_area(&self) -> f64 {
         let Held { region, .. } = self.held;
         if self.contact_cells() == 0 {
@@ -33,9 +34,9 @@ impl Fields<'_> {
     }
 
     /// Normal stiffness of the contact over the contact modulus \[m\]: dW/dω = E* times this while the contact area
-    /// stays as it is; with 1/C(0) it is the response to a jump, with 1/C(t) the response to a step held for t. 2a for a circle
-    /// of radius a. It depends on the area alone, not on the material; the electrical and thermal conductance of the
-    /// contact are proportional to it (J. R. Barber, Proc. R. Soc. A 459, 2003).
+    /// stays as it is; with 1/C(0) it is the response to a jump, with 1/C(t) the response to a step held for t. 2a
+    /// for a circle of radius a. It depends on the area alone, not on the material; the electrical and thermal
+    /// conductance of the contact are proportional to it (J. R. Barber, Proc. R. Soc. A 459, 2003).
     ///
     /// Zero without contact; infinite on periodic bodies in full contact, whose mean displacement is fixed. Costs about
     /// ten convolutions, ten preconditioner applications, and memory for them.
@@ -59,8 +60,8 @@ impl Fields<'_> {
     }
 
     /// [`Fields::stiffness_over_modulus`], and how a load point and the tilts move under a unit of force over the modulus,
-    /// while the body tilts freely about it along each axis of which the point is given: (S⁻¹)_i0 of the matrix S_ij = ∬ q_j ξ_i, K q_j =
-    /// ξ_j on the contact, ξ = 1, x1 − e1, x2 − e2.
+    /// while the body tilts freely about it along each axis of which the point is given: (S⁻¹)_i0 of the matrix
+    /// S_ij = ∬ q_j ξ_i, K q_j = ξ_j on the contact, ξ = 1, x1 − e1, x2 − e2.
     pub(crate) fn stiffnesses(&self, load_point: [Option<f64>; 2]) -> Result<(f64, [f64; 3])> {
         let (Held { region, current, .. }, rows) = (self.held, self.held.region.rows());
         if current.contact_cells == 0 {
@@ -156,8 +157,9 @@ impl Fields<'_> {
         Distribution::new(open.map(|(h, _)| *h), touchable, bins)
     }
 
-    /// Pressure, displacement, gap and net traction along the line of cells in the direction of `along` that contains the other
-    /// coordinate `at` \[m\]; if `at` lies on the boundary of two lines, along the upper one. Nothing is interpolated:
+    /// Pressure, displacement, gap and net traction along the line of cells in the direction of `along` that contains
+    /// the other coordinate `at` \[m\]; if `at` lies on the boundary of two lines, along the upper one. Nothing is
+    /// interpolated:
     /// [`LineProfile::at`] is the coordinate of the cell centres.
     ///
     /// ```

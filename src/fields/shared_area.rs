@@ -14,8 +14,8 @@ const PIECE: usize = 64;
 const NOTHING: f64 = -1.0;
 
 impl Fields<'_> {
-    /// The contact area \[m²\]: each rank finds the covered part of its rows of squares, and the parts of all ranks are added in the
-    /// order of the rows.
+    /// The contact area \[m²\]: each rank finds the covered part of its rows of squares, and the parts of all ranks
+    /// are added in the order of the rows.
     pub(super) fn shared_area(&self) -> f64 {
         let Held { region, current, .. } = self.held;
         let (rows, [n1, n2]) = (region.rows(), self.grid().cells());

@@ -8,12 +8,13 @@ impl Fields<'_> {
     /// The stress below the surface of the body of [`Builder::material`](crate::contact::Builder::material) under the
     /// present pressure.
     ///
-    /// An [`ElasticContact`](crate::elastic::ElasticContact) has no material: [`SubsurfaceStress::new`] takes its kernel, its
-    /// pressure and Poisson's ratio.
+    /// An [`ElasticContact`](crate::elastic::ElasticContact) has no material: [`SubsurfaceStress::new`] takes its
+    /// kernel, its pressure and Poisson's ratio.
     ///
     /// # Errors
     /// If the contact has no material ([`Error::Missing`]), or Poisson's ratio changes as the body creeps
-    /// ([`MaterialError::ChangingPoisson`]): follow the run with a [`StressHistory`](crate::contact::StressHistory). As [`SubsurfaceStress::new`].
+    /// ([`MaterialError::ChangingPoisson`]): follow the run with a [`StressHistory`](crate::contact::StressHistory).
+    /// As [`SubsurfaceStress::new`].
     pub fn stress(&self) -> Result<SubsurfaceStress> {
         self.stress_of(0)
     }

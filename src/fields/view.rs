@@ -4,8 +4,8 @@ use std::sync::OnceLock;
 
 use crate::equilibrium::{Ground, Held, Region};
 
-/// The displacement of a contact on the region that is computed, and of the rest of the grid the source of which it is the
-/// convolution, with its factor; none where it is zero.
+/// The displacement of a contact on the region that is computed, and of the rest of the grid the source of which it
+/// is the convolution, with its factor; none where it is zero.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Surface<'a> {
     pub(crate) own: &'a [f64],

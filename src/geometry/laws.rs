@@ -53,8 +53,8 @@ pub fn all(geometry: &dyn Geometry, grid: &Grid) -> Verdict {
     shifts_by_whole_cells(geometry, grid)
 }
 
-/// Checks a field: `expected` takes the index and the centre of a cell and its gap, and returns the value that it should
-/// have if it differs.
+/// Checks a field: `expected` takes the index and the centre of a cell and its gap, and returns the value that it
+/// should have if it differs.
 fn check(
     law: &'static str,
     grid: &Grid,

@@ -78,8 +78,8 @@ use crate::{Grid, memory};
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
 pub trait Geometry: Debug + Send + Sync {
-    /// Gap at the point (x1, x2) \[m\], h_i in Eq. 1 of the [paper](crate::paper); `+∞` where there is nothing to touch.
-    /// NaN and −∞ are errors wherever a geometry is used.
+    /// Gap at the point (x1, x2) \[m\], h_i in Eq. 1 of the [paper](crate::paper); `+∞` where there is nothing to
+    /// touch. NaN and −∞ are errors wherever a geometry is used.
     fn initial_gap(&self, x1: f64, x2: f64) -> f64;
 
     /// Writes the gap at every cell centre of `grid` into `gap` \[m\], which has one value per cell. Where
@@ -95,8 +95,8 @@ pub trait Geometry: Debug + Send + Sync {
 
     /// As [`fill_gap`](Geometry::fill_gap), for the shape with its origin shifted to the point `by` \[m\].
     ///
-    /// Override it if a whole field is cheaper than its points one by one, or can be shifted more accurately, such as the
-    /// Fourier series of a periodic surface.
+    /// Override it if a whole field is cheaper than its points one by one, or can be shifted more accurately, such as
+    /// the Fourier series of a periodic surface.
     ///
     /// # Panics
     /// If `gap` is not of length [`Grid::len`].
@@ -109,9 +109,9 @@ pub trait Geometry: Debug + Send + Sync {
         None
     }
 
-    /// Periods and shortest waves of the shape and of its parts, for the warnings of contacts whose grid does not hold them
-    /// ([`Warnings::OTHER_PERIOD`](crate::contact::Warnings::OTHER_PERIOD), [`Warnings::SHORT_WAVES`](crate::contact::Warnings::SHORT_WAVES)).
-    /// By default none are told.
+    /// Periods and shortest waves of the shape and of its parts, for the warnings of contacts whose grid does not
+    /// hold them ([`Warnings::OTHER_PERIOD`](crate::contact::Warnings::OTHER_PERIOD),
+    /// [`Warnings::SHORT_WAVES`](crate::contact::Warnings::SHORT_WAVES)). By default none are told.
     fn waves(&self) -> Vec<Waves> {
         Vec::new()
     }
@@ -129,7 +129,8 @@ fn fill_by_points<G: Geometry + ?Sized>(shape: &G, grid: &Grid, by: [f64; 2], ga
     }
 }
 
-/// Implements [`Geometry`] for references and pointers, so that shapes can be borrowed, owned, shared or chosen at run time.
+/// Implements [`Geometry`] for references and pointers, so that shapes can be borrowed, owned, shared or chosen at
+/// run time.
 macro_rules! forward_geometry {
     ($($pointer:ty),*) => {$(
         forward! {

@@ -2,7 +2,8 @@
 
 use crate::Grid;
 
-/// What a shape tells of its waves ([`Geometry::waves`](crate::geometry::Geometry::waves)), so that a contact warns where its grid cannot hold them.
+/// What a shape tells of its waves ([`Geometry::waves`](crate::geometry::Geometry::waves)), so that a contact warns
+/// where its grid cannot hold them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Waves {
     /// Lengths along x1 and x2 after which the shape repeats \[m\]; +∞ along an axis without a period.

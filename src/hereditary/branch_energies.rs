@@ -5,11 +5,11 @@ use crate::rheology::{CreepSpectrum, RelaxationSpectrum};
 
 /// The branches of a generalized Maxwell body in every cell, as springs E_i with dashpots E_i τ_i in series.
 ///
-/// With u = K P, where P = C ∗ dq is a field as local as the tractions q, branch i displaces the surface by E_i^(−1) u_i, and carries the
-/// tractions t_i: both obey y′ = E_i x′ − y/τ_i, with x = u for u_i and x = P for t_i, and u_i = K t_i. The bodies store
-/// ½ E∞ Σ u P + Σ_i Σ u_i t_i/(2 E_i), and dissipate Σ_i Σ u_i t_i/(E_i τ_i) and η Σ u′ P′ in a unit of time, each positive since K is. On
-/// a step u and P are linear in time, and energies exact: with z = Δ/τ_i and the functions φ of [`Relaxed`], a branch takes up the
-/// work φ₁ Σ t_i Δu + φ₂ E_i Σ ΔP Δu.
+/// With u = K P, where P = C ∗ dq is a field as local as the tractions q, branch i displaces the surface by E_i^(−1)
+/// u_i, and carries the tractions t_i: both obey y′ = E_i x′ − y/τ_i, with x = u for u_i and x = P for t_i, and
+/// u_i = K t_i. The bodies store ½ E∞ Σ u P + Σ_i Σ u_i t_i/(2 E_i), and dissipate Σ_i Σ u_i t_i/(E_i τ_i) and η Σ u′
+/// P′ in a unit of time, each positive since K is. On a step u and P are linear in time, and energies exact: with
+/// z = Δ/τ_i and the functions φ of [`Relaxed`], a branch takes up the work φ₁ Σ t_i Δu + φ₂ E_i Σ ΔP Δu.
 #[derive(Debug, Clone)]
 pub(crate) struct BranchEnergies {
     relaxation: RelaxationSpectrum,
@@ -30,7 +30,8 @@ impl BranchEnergies {
         BranchEnergies { relaxation, whole: fields(), changes: fields(), branches, stored: 0.0 }
     }
 
-    /// A step of length Δ to the displacement u and the tractions q: what is stored at its end, and what was dissipated, per area of a cell.
+    /// A step of length Δ to the displacement u and the tractions q: what is stored at its end, and what was
+    /// dissipated, per area of a cell.
     pub(crate) fn step(&mut self, dt: f64, u: &[f64], q: &[f64]) -> [f64; 2] {
         let BranchEnergies { relaxation, whole, changes: [du, dp], branches, stored } = self;
         let relaxed = |&(modulus, tau): &(f64, f64)| (modulus, Relaxed::new(dt / tau));

@@ -8,8 +8,8 @@ use crate::hereditary::interval::{HistoryInputs, Interval};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) enum Weighting {
-    /// At the end, the rule of the source paper: u(t_n) = Σ C(t_n − t_k) (v_k − v_(k−1)), Eq. 11 with the coefficients of
-    /// Eq. 12. First order, explicit in the creep, unstable for long steps.
+    /// At the end, the rule of the source paper: u(t_n) = Σ C(t_n − t_k) (v_k − v_(k−1)), Eq. 11 with the
+    /// coefficients of Eq. 12. First order, explicit in the creep, unstable for long steps.
     End,
     /// At the start: u(t_n) = Σ C(t_n − t_(k−1)) (v_k − v_(k−1)). First order and L-stable.
     Start,
@@ -99,7 +99,8 @@ impl DirectSum {
         Ok(newest)
     }
 
-    /// Takes the step of length `dt` that ends at the reduced time `end` into the past, given v at its start and at its end.
+    /// Takes the step of length `dt` that ends at the reduced time `end` into the past, given v at its start and at
+    /// its end.
     pub(super) fn commit(&mut self, (end, dt): (f64, f64), [before, after]: [&[f64]; 2]) {
         let time = if self.weighting == Weighting::Start { end - dt } else { end };
         let change = after.iter().zip(before).map(|(new, old)| new - old).collect();

@@ -10,8 +10,8 @@ pub(crate) enum Interpolant {
     /// Linear, and that stays so.
     #[default]
     Linear,
-    /// Linear, with the step before raised to a quadratic by what this step adds to its nodes. Quadratic for bodies with an
-    /// immediate dashpot, which respond to the slope at the end.
+    /// Linear, with the step before raised to a quadratic by what this step adds to its nodes. Quadratic for bodies
+    /// with an immediate dashpot, which respond to the slope at the end.
     CorrectedLinear,
     /// Quadratic through the last three nodes, with the step before raised to a cubic.
     CorrectedQuadratic,
@@ -19,8 +19,8 @@ pub(crate) enum Interpolant {
 
 /// The exponential rule.
 ///
-/// With v = K p and the contact relaxation modulus E(t) = E∞ + Σ E_i e^(−t/τ_i) + η δ(t), v = ∫ E(t − s) du(s). On a step of
-/// length Δ, after steps of Δ′ and Δ″, u is a polynomial through its last values, in Newton's form
+/// With v = K p and the contact relaxation modulus E(t) = E∞ + Σ E_i e^(−t/τ_i) + η δ(t), v = ∫ E(t − s) du(s). On a
+/// step of length Δ, after steps of Δ′ and Δ″, u is a polynomial through its last values, in Newton's form
 ///
 /// u + D₁ s + D₂ s (s − Δ), with the divided differences D_k at the end of the step,
 ///
@@ -29,16 +29,16 @@ pub(crate) enum Interpolant {
 ///
 /// q_i ← e^(−z_i) q_i + E_i Σ_k (I_k + e^(−z_i) I_k′ of the step before) D_k,
 ///
-/// where D_k = (u_new − R_k)/(Δ (Δ + Δ′) …), and R_k continues the polynomial through the k nodes before. Hence u_new = u_old +
-/// c v, with γ_k = Σ_i γ_ik, γ_ik = E_i (I_k + …)/(Δ (Δ + Δ′) …), dashpot included:
+/// where D_k = (u_new − R_k)/(Δ (Δ + Δ′) …), and R_k continues the polynomial through the k nodes before. Hence
+/// u_new = u_old + c v, with γ_k = Σ_i γ_ik, γ_ik = E_i (I_k + …)/(Δ (Δ + Δ′) …), dashpot included:
 ///
 /// 1/c = E∞ + γ₁ + γ₂ + γ₃, u_old = c (Σ γ_k R_k − Σ e^(−z_i) q_i).
 ///
-/// All γ_k are positive, and so is c. In a jump, Δ = 0, u is linear and γ₁ = Σ E_i. The derivation, the orders and the stability
-/// are in docs/methods.md and docs/maintainers/measurements.md.
+/// All γ_k are positive, and so is c. In a jump, Δ = 0, u is linear and γ₁ = Σ E_i. The derivation, the orders and
+/// the stability are in docs/methods.md and docs/maintainers/measurements.md.
 ///
-/// Fields keep their differences undivided, d₁ = u − u_before and so on, which have the unit of u whatever the length of the
-/// steps: d_k of a step is d_(k−1) less ρ_(k−1) times the d_(k−1) of the previous step.
+/// Fields keep their differences undivided, d₁ = u − u_before and so on, which have the unit of u whatever the length
+/// of the steps: d_k of a step is d_(k−1) less ρ_(k−1) times the d_(k−1) of the previous step.
 #[derive(Debug)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct ExponentialRule {
@@ -109,14 +109,16 @@ clone_by_fields! { Weights { dt, degree, corrects, c, past, branches, terms, rat
 const LONGEST_CONTINUED: f64 = 4.0;
 /// ... nor one of a body with an immediate dashpot, whose errors grow beyond 1 + √2.
 const LONGEST_CONTINUED_OF_DASHPOT: f64 = 2.41;
-/// Steps whose lengths are farther apart than this factor are not used to extrapolate each other: its square must be a number.
+/// Steps whose lengths are farther apart than this factor are not used to extrapolate each other: its square must be
+/// a number.
 const FARTHEST_APART: f64 = 1e150;
 /// A step shorter than this fraction of the step before was cut by an event: it does not correct the step before.
 const MIN_CORRECTING: f64 = 0.5;
-/// Stresses q_i below this \[Pa\] are forgotten, far above the smallest numbers of all: no sum with a stress that matters shows them.
+/// Stresses q_i below this \[Pa\] are forgotten, far above the smallest numbers of all: no sum with a stress that
+/// matters shows them.
 const NOTHING: f64 = 1e-200;
-/// Number of steps from one forgetting to the next. A stress that keeps half or more in each of them keeps 5e-20 in all; one that keeps less passes the
-/// smallest numbers by itself.
+/// Number of steps from one forgetting to the next. A stress that keeps half or more in each of them keeps 5e-20 in
+/// all; one that keeps less passes the smallest numbers by itself.
 const FORGETTING: u32 = 64;
 
 impl ExponentialRule {
@@ -142,8 +144,8 @@ impl ExponentialRule {
         }
     }
 
-    /// E_i of each relaxation time, the longest first, and the most by which its strain alone, 1, can ever raise a free surface, about: E_i over the sum of E∞
-    /// and the moduli of times at least as long.
+    /// E_i of each relaxation time, the longest first, and the most by which its strain alone, 1, can ever raise a
+    /// free surface, about: E_i over the sum of E∞ and the moduli of times at least as long.
     pub(super) fn influences(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         self.relaxation.terms().iter().rev().scan(self.equilibrium(), |longer, &(modulus, _)| {
             *longer += modulus;
@@ -191,8 +193,8 @@ impl ExponentialRule {
         self.tried.c
     }
 
-    /// The first degree that u lacks on the step predicted last, as far as the steps before it determine, and γ of that degree; none
-    /// after a jump or a corner.
+    /// The first degree that u lacks on the step predicted last, as far as the steps before it determine, and γ of
+    /// that degree; none after a jump or a corner.
     pub(super) fn missing(&self) -> Option<(usize, f64)> {
         let lacking = (self.tried.degree + 1).min(self.known + 1);
         (self.tried.dt > 0.0 && lacking > 1).then(|| (lacking, self.tried.defects[lacking - 2]))
@@ -203,8 +205,8 @@ impl ExponentialRule {
         if self.has_dashpot() { self.relaxation.viscosity() / self.tried.dt } else { 0.0 }
     }
 
-    /// Of each relaxation time, in the step predicted last: the part of q_i that is left of it, its response to a unit of u that is
-    /// linear on the step, and its share in a defect of v.
+    /// Of each relaxation time, in the step predicted last: the part of q_i that is left of it, its response to a
+    /// unit of u that is linear on the step, and its share in a defect of v.
     pub(super) fn responses(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
         let dt = self.tried.dt;
         let past = if self.known > 0 { self.spans[0] / dt } else { 0.0 };
@@ -227,8 +229,8 @@ impl ExponentialRule {
         [self.tried.answer, 1.0 / self.tried.c - self.equilibrium()]
     }
 
-    /// The response of the relaxation times, at the end of such a `share` of the step predicted last, to a u that has grown at the
-    /// rate 1/Δ since its start: Σ E_i (1 − e^(−share z_i))/z_i.
+    /// The response of the relaxation times, at the end of such a `share` of the step predicted last, to a u that has
+    /// grown at the rate 1/Δ since its start: Σ E_i (1 − e^(−share z_i))/z_i.
     pub(super) fn relaxing(&self, share: f64) -> f64 {
         let dt = self.tried.dt;
         let response = |&(modulus, tau): &(f64, f64)| -modulus * tau / dt * (-share * dt / tau).exp_m1();

@@ -1,17 +1,18 @@
-//! The fields of a state, one after the other, for everything that is done with all of them: count, allocate, transfer, save.
+//! The fields of a state, one after the other, for everything that is done with all of them: count, allocate,
+//! transfer, save.
 
 use std::ops::Range;
 
-/// Cells processed together, so that what the branches share stays in the fastest cache. With 30 branches at 256² cells a
-/// step takes 1.1 times as long as with one; 1.4 times if each branch is an array of its own, whose start must be fetched
-/// from memory for every block.
+/// Cells processed together, so that what the branches share stays in the fastest cache. With 30 branches at 256²
+/// cells a step takes 1.1 times as long as with one; 1.4 times if each branch is an array of its own, whose start
+/// must be fetched from memory for every block.
 pub(super) const BLOCK: usize = 512;
 
 /// A field of a state.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Field<'a> {
-    /// One or several values for each cell, by blocks of [`BLOCK`] cells: in a block the first values of all its cells, then the
-    /// second ones. Empty in a state on no cells yet.
+    /// One or several values for each cell, by blocks of [`BLOCK`] cells: in a block the first values of all its
+    /// cells, then the second ones. Empty in a state on no cells yet.
     pub(crate) values: &'a [f64],
     /// How many values each cell has; 0 for a field that is not kept.
     pub(crate) per_cell: usize,
@@ -35,8 +36,8 @@ impl<'a> Field<'a> {
         Field { values, per_cell: 1, role }
     }
 
-    /// Another field of this layout on other cells: `transfer` gives each of its values on all `cells` there, from its values
-    /// here and the values of `source`.
+    /// Another field of this layout on other cells: `transfer` gives each of its values on all `cells` there, from
+    /// its values here and the values of `source`.
     pub(crate) fn transferred(
         &self,
         source: Option<&[f64]>,

@@ -6,8 +6,8 @@ use crate::parallel::combine;
 /// Rounding of a displacement between 0 and 1.
 const ROUNDING: f64 = 1e-12;
 
-/// Displacements W of groups of elements that follow one [`ExponentialRule`]: 1 is the displacement of an element in contact, 0 that of
-/// an undisturbed one.
+/// Displacements W of groups of elements that follow one [`ExponentialRule`]: 1 is the displacement of an element in
+/// contact, 0 that of an undisturbed one.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct GroupHistory {
@@ -38,7 +38,8 @@ impl GroupHistory {
         self.rule.reset_differences();
     }
 
-    /// The mean response of a displacement that grows for the time of so many steps, each as long as the one predicted last.
+    /// The mean response of a displacement that grows for the time of so many steps, each as long as the one
+    /// predicted last.
     pub(crate) fn stiffness_over(&self, steps: f64) -> f64 {
         self.rule.equilibrium() + (self.rule.relaxing(steps) + self.rule.viscous()) / steps
     }
@@ -49,10 +50,11 @@ impl GroupHistory {
         self.columns.clone_from(&other.columns);
     }
 
-    /// Writes the displacement of each group at the end of a step, if nothing presses on it, to `free`. A polynomial of lower degree is
-    /// taken where a group would leave 0 ≤ W ≤ 1: an element that nothing presses on neither rises above the undisturbed surface nor
-    /// sinks below the contact. A body without elastic response resists the rate alone, whose quadratic overshoots 1 in the groups that the
-    /// last step met: this is as it must be, and W of groups that stay free is 1. Returns whether all are there.
+    /// Writes the displacement of each group at the end of a step, if nothing presses on it, to `free`. A polynomial
+    /// of lower degree is taken where a group would leave 0 ≤ W ≤ 1: an element that nothing presses on neither rises
+    /// above the undisturbed surface nor sinks below the contact. A body without elastic response resists the rate
+    /// alone, whose quadratic overshoots 1 in the groups that the last step met: this is as it must be, and W of
+    /// groups that stay free is 1. Returns whether all are there.
     pub(crate) fn predict(&mut self, dt: f64, interpolant: Interpolant, free: &mut Vec<f64>) -> bool {
         self.rule.compute_weights(dt, interpolant);
         let most = if self.rule.has_dashpot() { f64::MAX } else { 1.0 + ROUNDING };
@@ -103,13 +105,15 @@ impl GroupHistory {
         }
     }
 
-    /// Whether groups that are met in a step follow the edge that meets them, as in quadratic steps. On a body without elastic response the groups of
-    /// the last step share the response to the slope at the end, so that none has to follow.
+    /// Whether groups that are met in a step follow the edge that meets them, as in quadratic steps. On a body
+    /// without elastic response the groups of the last step share the response to the slope at the end, so that none
+    /// has to follow.
     pub(crate) fn leads(&self) -> bool {
         self.rule.kept() > 1 && !self.rule.has_dashpot()
     }
 
-    /// W at the end of the step predicted last, if nothing presses on it, of what stood at 0 and moved by these differences before.
+    /// W at the end of the step predicted last, if nothing presses on it, of what stood at 0 and moved by these
+    /// differences before.
     pub(crate) fn continued(&self, differences: [f64; 2]) -> f64 {
         let [_, of_change, of_bend] = self.rule.tried.past;
         if self.leads() { of_change * differences[0] + of_bend * differences[1] } else { 0.0 }
@@ -158,8 +162,8 @@ impl GroupHistory {
         self.columns.iter_mut().for_each(|column| column.insert(group, column[group]));
     }
 
-    /// W of each group and its strains W − q_i/E_i, the strain of the dashpot of each relaxation time: with the most that they can ever raise
-    /// a free surface, and what the last step left of older ones.
+    /// W of each group and its strains W − q_i/E_i, the strain of the dashpot of each relaxation time: with the most
+    /// that they can ever raise a free surface, and what the last step left of older ones.
     pub(crate) fn strains(&self) -> impl Iterator<Item = ([f64; 2], impl Fn(usize) -> f64 + '_)> + '_ {
         let displacements = &self.columns[0];
         let decays = self.rule.committed.branches.iter().rev().map(|weights| weights[0]);
@@ -173,9 +177,10 @@ impl GroupHistory {
         })
     }
 
-    /// Whether W of two groups, its first difference and what their strains can ever add to W differ by `most` at most. Strains of groups that
-    /// are held together, or free together, approach each other ever after, and W of a free group is a mean of them: so their greatest
-    /// difference is never passed, nor is the sum of what each of them alone can raise ([`ExponentialRule::influences`]).
+    /// Whether W of two groups, its first difference and what their strains can ever add to W differ by `most` at
+    /// most. Strains of groups that are held together, or free together, approach each other ever after, and W of a
+    /// free group is a mean of them: so their greatest difference is never passed, nor is the sum of what each of
+    /// them alone can raise ([`ExponentialRule::influences`]).
     pub(crate) fn differ_at_most(&self, a: usize, b: usize, most: f64) -> bool {
         let [displacements, changes, _, stresses @ ..] = &self.columns[..] else { return true };
         let difference = displacements[a] - displacements[b];

@@ -149,8 +149,8 @@ impl History {
         &self.displacement.trial
     }
 
-    /// Whether [`History::roll_back`] can return to the start of the last step: not once another step was tried, nor where the
-    /// bodies moved.
+    /// Whether [`History::roll_back`] can return to the start of the last step: not once another step was tried, nor
+    /// where the bodies moved.
     pub(crate) fn start_is_kept(&self) -> bool {
         self.start_is_kept
     }
@@ -160,7 +160,8 @@ impl History {
         self.start_is_kept = false;
     }
 
-    /// Returns to the start of the last step, which must be kept; `touched` is true if the step was taken into a direct sum.
+    /// Returns to the start of the last step, which must be kept; `touched` is true if the step was taken into a
+    /// direct sum.
     pub(crate) fn roll_back(&mut self, touched: bool) {
         self.start_is_kept = false;
         let (rule, fields) = self.parts();
@@ -197,8 +198,8 @@ impl History {
         self.has_far_field() && self.integrates_displacement()
     }
 
-    /// Predicts u = u_old + c K p at the end of a step: u_old is written to the trial. Returns c, which is 0 in jumps of
-    /// bodies without elastic response, and the number of convolutions taken.
+    /// Predicts u = u_old + c K p at the end of a step: u_old is written to the trial. Returns c, which is 0 in jumps
+    /// of bodies without elastic response, and the number of convolutions taken.
     pub(crate) fn predict(
         &mut self,
         step: Interval,
@@ -232,8 +233,8 @@ impl History {
         }
     }
 
-    /// Adds the response to the pressure found for the step, and v = K p; `displace` turns u_old, given the displacement at
-    /// the start of the step, into the displacement at its end.
+    /// Adds the response to the pressure found for the step, and v = K p; `displace` turns u_old, given the
+    /// displacement at the start of the step, into the displacement at its end.
     pub(crate) fn respond(
         &mut self,
         c: f64,
@@ -257,16 +258,16 @@ impl History {
         Some(frame.outstanding(rule, creep, stride, pressure)).filter(|change| !change.is_empty())
     }
 
-    /// u − u_old, by which a free displacement recedes in the step predicted last: calls `take` with it for each cell that is
-    /// `wanted`. Only the exponential rule has it.
+    /// u − u_old, by which a free displacement recedes in the step predicted last: calls `take` with it for each cell
+    /// that is `wanted`. Only the exponential rule has it.
     pub(crate) fn recovery(&self, wanted: impl Fn(usize) -> bool, mut take: impl FnMut(usize, f64)) {
         let Some(own) = self.exponential_rule().filter(|_| self.frame.is_none()) else { return };
         let (held, now) = (own.compliance() * own.equilibrium(), &self.displacement.now);
         self.displacement.recovery(&own.tried, wanted, |k, by_past| take(k, held * now[k] + by_past));
     }
 
-    /// Accepts the step predicted last, given v = K p at its start and at its end; `touched` is true if anything has ever
-    /// been displaced.
+    /// Accepts the step predicted last, given v = K p at its start and at its end; `touched` is true if anything has
+    /// ever been displaced.
     pub(crate) fn commit(&mut self, step: Interval, potentials: [&[f64]; 2], touched: bool) {
         if let Some(frame) = self.frame.as_mut().filter(|_| step.stride != [0; 2]) {
             frame.shift_start(step.stride, &mut self.displacement);
@@ -290,8 +291,8 @@ impl History {
         }
     }
 
-    /// Whether it follows the same rule as another, on these cells, a `window` of the grid or all of it: a file may hold
-    /// anything.
+    /// Whether it follows the same rule as another, on these cells, a `window` of the grid or all of it: a file may
+    /// hold anything.
     #[cfg(feature = "checkpoint")]
     pub(crate) fn fits(&self, other: &History, cells: [usize; 2], window: bool) -> bool {
         let (kept, rule_fits) = match (&self.rule, &other.rule) {

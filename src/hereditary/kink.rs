@@ -9,9 +9,9 @@ const SHARES: [f64; 3] = [0.25, 0.5, 0.75];
 
 /// The errors of v by kinks of u in the step predicted last.
 ///
-/// u of a cell follows its extrapolated course until a body meets the cell within the step of length Δ. From then on u changes
-/// faster, by `jump` Δ⁻¹ more, and at the end it is off by `bend`: the cell was met at the time (1 − θ) Δ, θ = bend/jump. With
-/// z_i = Δ/τ_i, v responds at the time σ Δ by
+/// u of a cell follows its extrapolated course until a body meets the cell within the step of length Δ. From then on
+/// u changes faster, by `jump` Δ⁻¹ more, and at the end it is off by `bend`: the cell was met at the time (1 − θ) Δ,
+/// θ = bend/jump. With z_i = Δ/τ_i, v responds at the time σ Δ by
 ///
 /// Σ E_i (1 − e^(−(σ − 1 + θ) z_i))/z_i jump + η jump/Δ.
 ///
@@ -28,8 +28,8 @@ impl Kinks<'_> {
         Kinks { rule, linear: OnceLock::new() }
     }
 
-    /// What v lacks at the end of the step: by the polynomial on it, and with what the kink wrongly changes of the step before, which
-    /// was smooth. The next step puts right a part of either.
+    /// What v lacks at the end of the step: by the polynomial on it, and with what the kink wrongly changes of the
+    /// step before, which was smooth. The next step puts right a part of either.
     pub(super) fn at_end(&self, jump: f64, bend: f64) -> [f64; 2] {
         let since = bend / jump;
         if !(since > 0.0 && since < 1.0) {
@@ -39,10 +39,12 @@ impl Kinks<'_> {
         self.rule.responses_to_unexpected().map(|response| exact - response * bend)
     }
 
-    /// What v lacks at each of the [`SHARES`], where a shorter step from the same start takes u to be linear. Short relaxation times
-    /// respond to the kink and forget it before the step ends, so that its end does not show this error.
+    /// What v lacks at each of the [`SHARES`], where a shorter step from the same start takes u to be linear. Short
+    /// relaxation times respond to the kink and forget it before the step ends, so that its end does not show this
+    /// error.
     ///
-    /// An immediate dashpot responds by a finite pressure to a cell just met, however short the step: nothing resolves that.
+    /// An immediate dashpot responds by a finite pressure to a cell just met, however short the step: nothing
+    /// resolves that.
     pub(super) fn within(&self, jump: f64, bend: f64) -> [f64; SHARES.len()] {
         let met = 1.0 - bend / jump;
         let linear = || SHARES.map(|share| self.rule.relaxing(share) / share);

@@ -2,9 +2,9 @@
 
 use crate::hereditary::exponential_rule::ExponentialRule;
 
-/// The mean error of u that the defects of earlier steps have left, with the errors of the q_i that belong to it. Bodies being
-/// linear, an error follows the recursion of u itself, as in a cell to whose q_i each step adds its defect: the defect relaxes, and
-/// u keeps its response until the bodies creep back.
+/// The mean error of u that the defects of earlier steps have left, with the errors of the q_i that belong to it.
+/// Bodies being linear, an error follows the recursion of u itself, as in a cell to whose q_i each step adds its
+/// defect: the defect relaxes, and u keeps its response until the bodies creep back.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct LastingError {
@@ -29,8 +29,8 @@ impl LastingError {
         self.u.abs()
     }
 
-    /// Takes in the step of this `defect` of v that the rule has predicted and not yet replaced by the next prediction. Where a motion is given,
-    /// u has no error.
+    /// Takes in the step of this `defect` of v that the rule has predicted and not yet replaced by the next
+    /// prediction. Where a motion is given, u has no error.
     pub(crate) fn include(&mut self, rule: &ExponentialRule, defect: f64, motion_is_given: bool) {
         let (mut answer, mut left) = (rule.viscous(), 0.0);
         for (q, [decay, of_u, share]) in self.q.iter_mut().zip(rule.responses()) {

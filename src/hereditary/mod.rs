@@ -1,21 +1,21 @@
-//! Hereditary integral (Eq. 9 and Eq. 10 of the paper): the part of the displacement at the end of a step that follows from
-//! the past.
+//! Hereditary integral (Eq. 9 and Eq. 10 of the paper): the part of the displacement at the end of a step that
+//! follows from the past.
 //!
 //! Every time rule writes the displacement at the end of a step as
 //!
 //! u = u_old + c K p,
 //!
-//! with one number c, the compliance of the step, and one field u_old. The contact problem of the step is then the problem of
-//! an elastic body. [`History`] is the one interface to this: a step predicts c and u_old, responds to a pressure, and is
-//! committed when it is accepted. Three rules are behind it:
+//! with one number c, the compliance of the step, and one field u_old. The contact problem of the step is then the
+//! problem of an elastic body. [`History`] is the one interface to this: a step predicts c and u_old, responds to a
+//! pressure, and is committed when it is accepted. Three rules are behind it:
 //!
-//! * [`ExponentialRule`]: a recursion with one field per relaxation time, updated in place; stable for steps of any length.
-//!   Within a step u is a polynomial of time, see [`Interpolant`].
-//! * [`DirectSum`](direct_sum::DirectSum): every past increment of v = K p, summed anew in each step with weights from C(t).
-//!   It needs no exponential series and serves the paper's rectangle rule and the backward rule. For the paper's own cost it
-//!   can keep the increments of p instead, and convolve each of them in every step.
-//! * [`MovingFrame`](moving_frame::MovingFrame): the exponential rule for the field whose convolution is the displacement, so
-//!   that the bodies can move under the grid.
+//! * [`ExponentialRule`]: a recursion with one field per relaxation time, updated in place; stable for steps of any
+//!   length. Within a step u is a polynomial of time, see [`Interpolant`].
+//! * [`DirectSum`](direct_sum::DirectSum): every past increment of v = K p, summed anew in each step with weights
+//!   from C(t). It needs no exponential series and serves the paper's rectangle rule and the backward rule. For the
+//!   paper's own cost it can keep the increments of p instead, and convolve each of them in every step.
+//! * [`MovingFrame`](moving_frame::MovingFrame): the exponential rule for the field whose convolution is the
+//!   displacement, so that the bodies can move under the grid.
 //!
 //! [`RememberedField`] is a field at the start of a step and at its end, with its past. It serves the displacement, the far
 //! field of a window, and the moving frame alike.

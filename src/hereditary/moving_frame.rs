@@ -6,10 +6,10 @@ use crate::hereditary::remembered_field::RememberedField;
 use crate::kernel::{LocalKernel, Workspace};
 use crate::rheology::CreepSpectrum;
 
-/// The past kept as the field U with u = K U, and its branches, which follow the recursion of u itself, K and the bodies
-/// being linear. U vanishes wherever there never was contact: what enters the grid across its edge is known, and so the
-/// grid can follow an indenter over endless bodies, or around periodic ones. The displacement costs one convolution per
-/// step, however many relaxation times there are.
+/// The past kept as the field U with u = K U, and its branches, which follow the recursion of u itself, K and the
+/// bodies being linear. U vanishes wherever there never was contact: what enters the grid across its edge is known,
+/// and so the grid can follow an indenter over endless bodies, or around periodic ones. The displacement costs one
+/// convolution per step, however many relaxation times there are.
 ///
 /// The surface in contact is laid on the rigid body after each step. What that changes no pressure has caused; it
 /// follows the same recursion, as a displacement e: u = K U + e.
@@ -50,8 +50,9 @@ impl MovingFrame {
             && self.remainder.fits(&other.remainder, kept)
     }
 
-    /// Finds U_old and e_old at the end of a step in which the cell `[i, j]` comes over what was the cell `[i, j] + stride`, and
-    /// u_old = K U_old + e_old as the trial of the displacement. Returns the number of convolutions taken.
+    /// Finds U_old and e_old at the end of a step in which the cell `[i, j]` comes over what was the cell `[i,
+    /// j] + stride`, and u_old = K U_old + e_old as the trial of the displacement. Returns the number of convolutions
+    /// taken.
     pub(crate) fn predict(
         &mut self,
         rule: &mut ExponentialRule,
@@ -103,11 +104,12 @@ impl MovingFrame {
         }
     }
 
-    /// How much U would still change if `pressure` stayed on its cells and steps like the last one, of a `stride` of one cell along
-    /// an axis, went on for ever. Of elastic bodies nothing.
+    /// How much U would still change if `pressure` stayed on its cells and steps like the last one, of a `stride` of
+    /// one cell along an axis, went on for ever. Of elastic bodies nothing.
     ///
-    /// The bodies carry U through the cells of a line, one in each step. Where U no longer changed, the rule would give the pressure
-    /// that holds it. What the pressure has above that still deforms the bodies, by the steady response of their creep.
+    /// The bodies carry U through the cells of a line, one in each step. Where U no longer changed, the rule would
+    /// give the pressure that holds it. What the pressure has above that still deforms the bodies, by the steady
+    /// response of their creep.
     pub(super) fn outstanding(
         &self,
         rule: &ExponentialRule,
@@ -156,7 +158,8 @@ impl MovingFrame {
     }
 }
 
-/// The sum of all gains so far, each multiplied by `decay` in every step since; along a periodic line they come round for ever.
+/// The sum of all gains so far, each multiplied by `decay` in every step since; along a periodic line they come round
+/// for ever.
 fn carried(gains: impl ExactSizeIterator<Item = f64> + Clone, decay: f64, periodic: bool) -> Vec<f64> {
     let round = gains.clone().fold(0.0, |sum, gain| decay * sum + gain);
     let before = if periodic { round / (1.0 - decay.powi(gains.len() as i32)) } else { 0.0 };
@@ -167,8 +170,8 @@ fn carried(gains: impl ExactSizeIterator<Item = f64> + Clone, decay: f64, period
     gains.scan(before, add).collect()
 }
 
-/// Replaces the value of each cell `[i, j]` by the value of `[i, j] + by`, which along periodic axes comes round, and is else zero
-/// beyond the ends.
+/// Replaces the value of each cell `[i, j]` by the value of `[i, j] + by`, which along periodic axes comes round, and
+/// is else zero beyond the ends.
 fn shift(field: &mut [f64], [n1, n2]: [usize; 2], by: [isize; 2], periodic: [bool; 2]) {
     let line = |line: &mut [f64], by: isize, unit: usize, periodic: bool| {
         let steps = if periodic { by.unsigned_abs() % (line.len() / unit) } else { by.unsigned_abs() };

@@ -10,11 +10,12 @@ const DIP: f64 = -1e-9;
 /// So small a part of the side of a cell is what a convolution leaves of nothing.
 const NOISE: f64 = -1e-14;
 
-/// A field and the memory of its past. The bodies being linear, whatever the displacement is a convolution of follows the
-/// recursion of the displacement itself.
+/// A field and the memory of its past. The bodies being linear, whatever the displacement is a convolution of follows
+/// the recursion of the displacement itself.
 ///
-/// What the step committed last adds to the past waits until the next one is predicted, so that every q_i passes through the
-/// processor once per step: with many relaxation times this is the cost of a step besides its contact problem.
+/// What the step committed last adds to the past waits until the next one is predicted, so that every q_i passes
+/// through the processor once per step: with many relaxation times this is the cost of a step besides its contact
+/// problem.
 #[derive(Debug, Default)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct RememberedField {
@@ -51,8 +52,8 @@ impl RememberedField {
         RememberedField { branches, relaxing, now, trial, ..RememberedField::default() }
     }
 
-    /// The undisturbed field of a rule, on no cells yet. It keeps the differences that steps of given length need, so that none
-    /// of these steps allocates.
+    /// The undisturbed field of a rule, on no cells yet. It keeps the differences that steps of given length need, so
+    /// that none of these steps allocates.
     pub(super) fn on_no_cells(rule: &ExponentialRule, branches: usize) -> RememberedField {
         RememberedField { kept: rule.least_kept(), ..RememberedField::new(branches, 0) }
     }
@@ -92,7 +93,8 @@ impl RememberedField {
         self.differences.iter_mut().take(self.kept).for_each(|own| job(own));
     }
 
-    /// Whether it has as many branches as another, and keeps as many differences as a rule, unless it has yet to take in a step.
+    /// Whether it has as many branches as another, and keeps as many differences as a rule, unless it has yet to take
+    /// in a step.
     #[cfg(feature = "checkpoint")]
     pub(super) fn fits(&self, other: &RememberedField, kept: usize) -> bool {
         self.branches == other.branches && self.kept <= 2 && (self.kept >= kept || self.waiting)
@@ -109,8 +111,8 @@ impl RememberedField {
         self.differences.each_ref().map(|own| &own[..])
     }
 
-    /// Writes u_old of the step whose weights were computed last to the trial. After a commit the trial must still be the field
-    /// before that step.
+    /// Writes u_old of the step whose weights were computed last to the trial. After a commit the trial must still be
+    /// the field before that step.
     pub(super) fn predict(&mut self, rule: &ExponentialRule) {
         self.advance(rule, Some(&rule.tried));
     }
@@ -122,7 +124,8 @@ impl RememberedField {
         }
     }
 
-    /// Takes in the step committed last, if it waits, and predicts the step of weights `tried`, if any: then the trial is u_old.
+    /// Takes in the step committed last, if it waits, and predicts the step of weights `tried`, if any: then the
+    /// trial is u_old.
     fn advance(&mut self, rule: &ExponentialRule, tried: Option<&Weights>) {
         self.keep(rule.kept());
         let RememberedField { branches, relaxing, differences, waiting, now, trial, .. } = self;
@@ -160,8 +163,9 @@ impl RememberedField {
         });
     }
 
-    /// Predicts the end of the step whose weights were computed last. No pressure has pulled the surface up yet: if the field
-    /// would fall below zero, and `sign_counts`, a polynomial of lower degree is taken. `side` \[m\] is the width of a cell.
+    /// Predicts the end of the step whose weights were computed last. No pressure has pulled the surface up yet: if
+    /// the field would fall below zero, and `sign_counts`, a polynomial of lower degree is taken. `side` \[m\] is the
+    /// width of a cell.
     pub(super) fn predict_non_negative(
         &mut self,
         rule: &mut ExponentialRule,
@@ -176,8 +180,8 @@ impl RememberedField {
         }
     }
 
-    /// Whether the trial is negative somewhere, by more than the rounding of the greatest field so far, or of a convolution that
-    /// leaves nothing.
+    /// Whether the trial is negative somewhere, by more than the rounding of the greatest field so far, or of a
+    /// convolution that leaves nothing.
     pub(super) fn falls_below_zero(&self, rule: &mut ExponentialRule, side: f64, rows: &Rows) -> bool {
         rule.greatest = rule.greatest.max(rows.greatest(greatest(&self.now)));
         let least = (DIP * rule.greatest).min(NOISE * side);

@@ -35,12 +35,13 @@ pub(crate) struct StepContext {
     /// The mean errors of u that earlier steps have left, in contact and outside, and the tolerance of each step.
     pub(crate) lasting: [f64; 2],
     pub(crate) tolerance: f64,
-    /// Where a given approach is to follow a given force: the errors of u at that moment, each over the glassy compliance, that a
-    /// unit of a defect of v leaves in this step and in all steps; 0 where none is to follow.
+    /// Where a given approach is to follow a given force: the errors of u at that moment, each over the glassy
+    /// compliance, that a unit of a defect of v leaves in this step and in all steps; 0 where none is to follow.
     pub(crate) on_switch: [f64; 2],
     /// The mean v of the greatest loads, to which the error at that moment is relative; 0 where none is to follow.
     pub(crate) greatest_on_switch: f64,
-    /// The response of v to an error of u of the cells that are met in a jump of the force at the end of the step; 0 if there is none.
+    /// The response of v to an error of u of the cells that are met in a jump of the force at the end of the step; 0
+    /// if there is none.
     pub(crate) on_jump: f64,
     /// Whether the load has a corner or jumps at the end of the step, which no step then puts right.
     pub(crate) is_last: bool,
@@ -48,12 +49,14 @@ pub(crate) struct StepContext {
     pub(crate) agreement: f64,
     /// Steps so far, this one included.
     pub(crate) steps: f64,
-    /// Events that take less time than this do not matter: an immediate dashpot presses on a body that meets a cell with a finite pressure
-    /// at once, however short the step.
+    /// Events that take less time than this do not matter: an immediate dashpot presses on a body that meets a cell
+    /// with a finite pressure at once, however short the step.
     pub(crate) resolution: f64,
-    /// Steps of at most this length have no estimated error on a body without elastic response, which hardly moves in them.
+    /// Steps of at most this length have no estimated error on a body without elastic response, which hardly moves in
+    /// them.
     pub(crate) beginning: f64,
-    /// Whether the length of the step is given: the first step after a jump or a corner is then not chosen by its error.
+    /// Whether the length of the step is given: the first step after a jump or a corner is then not chosen by its
+    /// error.
     pub(crate) length_is_given: bool,
 }
 

@@ -19,7 +19,8 @@ pub(crate) struct ErrorMeasure<'a> {
     pub(crate) pressure: [&'a [f64]; 3],
     /// v = K p at the end of the step tried.
     pub(crate) potential: &'a [f64],
-    /// Weights of the errors of u and of v: 1 and 0 under a given force, 0 and 1 under a given motion, which leaves u in contact no error.
+    /// Weights of the errors of u and of v: 1 and 0 under a given force, 0 and 1 under a given motion, which leaves u
+    /// in contact no error.
     pub(crate) matters: [f64; 2],
     /// The greatest means over the contact of displacement and v, and the least that errors are taken relative to.
     pub(crate) greatest: [f64; 2],
@@ -30,11 +31,11 @@ pub(crate) struct ErrorMeasure<'a> {
     pub(crate) from_rest: bool,
     /// By how much the rigid body above a cell advances in the step.
     pub(crate) advance: &'a (dyn Fn(usize) -> f64 + Sync),
-    /// C(age)/C(Δ), by which an error in u grows in the end if the next steps err alike: a step responds to a defect of v
-    /// with the compliance of a step, all steps together with the compliance of their age.
+    /// C(age)/C(Δ), by which an error in u grows in the end if the next steps err alike: a step responds to a defect
+    /// of v with the compliance of a step, all steps together with the compliance of their age.
     pub(crate) amplification: f64,
-    /// The error of v that a unit of this defect of v leaves where a given approach follows a given force: the error of u at that
-    /// moment, to which bodies respond as glass. 0 where no such switch is to come.
+    /// The error of v that a unit of this defect of v leaves where a given approach follows a given force: the error
+    /// of u at that moment, to which bodies respond as glass. 0 where no such switch is to come.
     pub(crate) on_switch: f64,
     /// The compliance in series with the bodies as they meet again ([`Meeting::give`]), 0 where a motion is given.
     pub(crate) give: f64,
@@ -49,7 +50,8 @@ pub(crate) struct TimeError {
     pub(crate) relative: f64,
     /// Whether it comes of cells that joined.
     pub(crate) by_kinks: bool,
-    /// The greatest defect of v in a cell in contact, or in a cell that bodies may come back to, relative to the mean of v.
+    /// The greatest defect of v in a cell in contact, or in a cell that bodies may come back to, relative to the mean
+    /// of v.
     pub(crate) greatest: f64,
     /// Means over the contact of displacement and v, weighted by the pressure.
     pub(crate) sizes: [f64; 2],
@@ -71,8 +73,8 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 const SOON_LEFT: f64 = 0.05;
 /// Defects of cells that leave the contact count twice.
 const LEFT: f64 = 2.0;
-/// A force, and an immediate dashpot, press cells at the edge of the contact more than others: a rigid body presses hardest
-/// there.
+/// A force, and an immediate dashpot, press cells at the edge of the contact more than others: a rigid body presses
+/// hardest there.
 const EDGE: f64 = 3.0;
 /// The kinks of cells that joined stay in the past, and the kinks of successive steps do not cancel.
 const LASTING: f64 = 1.3;
@@ -82,28 +84,30 @@ const LASTING_PART: f64 = 0.5;
 const TOLERATED: f64 = 0.8;
 /// The error of a step is multiplied by 1 + this weight times the excess, in tolerances.
 const LASTING_WEIGHT: f64 = 5.0;
-/// A defect of the free surface, to which the body comes back, is multiplied by this: defects of a surface that recovers have one sign.
+/// A defect of the free surface, to which the body comes back, is multiplied by this: defects of a surface that
+/// recovers have one sign.
 const RECOVERING: f64 = 3.0;
 /// The weight, as that above, of the errors that earlier steps have left on the free surface.
 const SURFACE_WEIGHT: f64 = 1.0;
 /// The most of these errors that counts, in tolerances.
 const MOST_OF_SURFACE: f64 = 3.0;
-/// Bodies that nothing pressed before meet all their cells within a step, and their kinks agree: most of that error is one of the
-/// pressure alone.
+/// Bodies that nothing pressed before meet all their cells within a step, and their kinks agree: most of that error
+/// is one of the pressure alone.
 const FROM_REST: f64 = 0.1;
 
 impl History {
     /// The estimated error of the step tried; 0 where too few steps before it are known.
     ///
-    /// With d_k the last difference, of the first degree k that u lacks on the step, and Γ_k what it would weigh, the defect of v
-    /// is
+    /// With d_k the last difference, of the first degree k that u lacks on the step, and Γ_k what it would weigh, the
+    /// defect of v is
     ///
     /// λ Γ_k Σ p |d_k| / Σ p, where λ is the share that is left once the next step has put this one right,
     ///
-    /// weighted by the pressure: the greatest error over all cells is the error of the kink of u at a moving edge, which carries no
-    /// force. Cells that have just left, and have no weight, count by the greatest of them. Those that joined in this step count
-    /// with what v lacks by the kink of u when the body met them. Relative to v, this is the error of a force under given motion.
-    /// Under a given force, the error of u is c times it, or more if the defects of many steps add up.
+    /// weighted by the pressure: the greatest error over all cells is the error of the kink of u at a moving edge,
+    /// which carries no force. Cells that have just left, and have no weight, count by the greatest of them. Those
+    /// that joined in this step count with what v lacks by the kink of u when the body met them. Relative to v, this
+    /// is the error of a force under given motion. Under a given force, the error of u is c times it, or more if the
+    /// defects of many steps add up.
     pub(crate) fn time_error(&self, measure: ErrorMeasure<'_>) -> TimeError {
         let Some(rule) = self.exponential_rule().filter(|rule| rule.has_memory()) else { return TimeError::default() };
         let (dt, context) = (rule.tried.dt, measure.context);
@@ -146,7 +150,8 @@ impl History {
         let of_v = (EDGE * kinks).max(smooth);
         let error_of_u = if matters[0] > 0.0 { relative(of_u, scales[0]) } else { 0.0 };
         let error_of_v = if matters[1] > 0.0 { matters[1] * relative(of_v, scales[1]) } else { 0.0 };
-        // an error of the surface counts by the force with which the bodies meet it again, and where a spring gives way by their approach
+        // an error of the surface counts by the force with which the bodies meet it again, and where a spring gives
+        // way by their approach
         let (Meeting { stiffness, .. }, give) = (context.meeting, measure.give);
         let [of_force, of_approach] = if give.is_finite() {
             // without an elastic response the force is unbounded at short times
@@ -268,7 +273,8 @@ named_sums! {
         touching: +,
         /// Number of cells in contact before the step.
         touched: +,
-        /// Sums of what v lacks by kinks at the end of the step, by its polynomial and with its correction of the step before.
+        /// Sums of what v lacks by kinks at the end of the step, by its polynomial and with its correction of the
+        /// step before.
         kinks: modes,
         /// The same at ¼, ½ and ¾ of the step.
         kinks_within: modes,
@@ -303,9 +309,9 @@ struct Defect {
 }
 
 impl Sums {
-    /// The error of v by the kink that u has where cells leave: cells that stay answer a force with a greater compliance, cells that leave
-    /// follow the body no longer. The pressure of the cells that leave falls as in the step before, which tells when they do. A dashpot
-    /// has no kink in u as long as v has no jump.
+    /// The error of v by the kink that u has where cells leave: cells that stay answer a force with a greater
+    /// compliance, cells that leave follow the body no longer. The pressure of the cells that leave falls as in the
+    /// step before, which tells when they do. A dashpot has no kink in u as long as v has no jump.
     fn of_leaving(&self, rule: &ExponentialRule) -> f64 {
         if self.released == 0.0 || rule.has_dashpot() || rule.missing().is_none() {
             return 0.0;

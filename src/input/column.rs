@@ -124,8 +124,8 @@ impl TextTable {
     /// The numbers of `columns` in every row, in the units of the file.
     ///
     /// # Errors
-    /// If a row has another number of columns than the headings (or than `columns`, without headings), or a field is not a
-    /// number, each with its line ([`TextError`]).
+    /// If a row has another number of columns than the headings (or than `columns`, without headings), or a field is
+    /// not a number, each with its line ([`TextError`]).
     pub fn rows(&self, columns: &[TakenColumn]) -> Result<Vec<TableRow>, TextError> {
         self.rows_by(columns, |row, column| row.number(column))
     }
@@ -158,7 +158,8 @@ impl TextTable {
 
     /// The column that is `wanted`; `None` if no heading names it.
     ///
-    /// Among several columns of this name, the one with a unit of its quantity is taken. Columns of equal values are one.
+    /// Among several columns of this name, the one with a unit of its quantity is taken. Columns of equal values are
+    /// one.
     ///
     /// # Errors
     /// If several may be it: the error names them.

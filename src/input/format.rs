@@ -4,8 +4,8 @@ value! {
 /// How a text file separates its fields and writes its numbers, where this is not to be found out.
 ///
 /// Fields that contain the delimiter or a line end are quoted. Numbers have an exponent with `e`, or with `d` as in
-/// Fortran, and no separators of thousands. Empty lines and lines that start with `#` or `%` are skipped. Texts are UTF-8,
-/// Windows-1252 (which includes Latin-1), or UTF-16 with a byte order mark.
+/// Fortran, and no separators of thousands. Empty lines and lines that start with `#` or `%` are skipped. Texts are
+/// UTF-8, Windows-1252 (which includes Latin-1), or UTF-16 with a byte order mark.
 ///
 /// ```
 /// use viscocontact::rheology::{Experiment, Measurements, Units};
@@ -26,8 +26,8 @@ pub struct TextFormat {
     decimal_comma: Option<bool>;
     /// Number of lines at the beginning of the file that are not read.
     skipped_lines: u64, with_skipped_lines;
-    /// The height that stands for a point without one, in the unit of the file: −9999, 65535. NaN: there is none, and every
-    /// number is a height. By default, numbers that look like it are an error.
+    /// The height that stands for a point without one, in the unit of the file: −9999, 65535. NaN: there is none, and
+    /// every number is a height. By default, numbers that look like it are an error.
     missing_height: Option<f64>;
 }
 }

@@ -78,8 +78,8 @@ fn is_open(text: &str) -> bool {
     BRACKETS.iter().any(|[open, close]| text.matches(*open).count() > text.matches(*close).count())
 }
 
-/// The ends of a text that are units, the longest first: of `J 1/Pa`, this is 1/Pa, and not Pa; of `t / s`, the second is s.
-/// None after a number, as in `E at 5 MPa`.
+/// The ends of a text that are units, the longest first: of `J 1/Pa`, this is 1/Pa, and not Pa; of `t / s`, the
+/// second is s. None after a number, as in `E at 5 MPa`.
 fn last_units(text: &str) -> Vec<(&str, bool)> {
     let opens = |c: char| BRACKETS.iter().any(|[open, _]| *open == c);
     let starts = text.char_indices().filter(|&(_, c)| SEPARATORS.contains(c) || opens(c));

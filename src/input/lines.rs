@@ -76,8 +76,8 @@ impl Text {
         best.map_or(none, |best| best.0)
     }
 
-    /// The sum over rows of the squared share of numbers among the fields; none, if decimal commas may separate thousands
-    /// and it is not `stated` which they do.
+    /// The sum over rows of the squared share of numbers among the fields; none, if decimal commas may separate
+    /// thousands and it is not `stated` which they do.
     fn score(&self, dialect: Dialect, unstated: bool) -> f64 {
         let (mut score, mut unclear, mut seen) = (0.0, dialect.decimal_comma && unstated, 0);
         // commas do both only where numbers are quoted

@@ -1,7 +1,7 @@
 //! Text files as instruments and programs write them: encodings, lines, headings with units, columns, numbers.
 //!
-//! Readers of one kind of data ([`Measurements::from_csv`](crate::rheology::Measurements::from_csv)) use a [`TextTable`], which
-//! they also accept; so do other crates, by [`TextTable::find`].
+//! Readers of one kind of data ([`Measurements::from_csv`](crate::rheology::Measurements::from_csv)) use a
+//! [`TextTable`], which they also accept; so do other crates, by [`TextTable::find`].
 
 mod column;
 mod encoding;

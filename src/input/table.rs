@@ -16,10 +16,11 @@ const ROWS_OF_NUMBERS: usize = 3;
 
 /// A table in a text file, as it was understood: print it to see how.
 ///
-/// The table begins with the first rows that have numbers in the same two columns. The row above them has the headings, if
-/// none of its fields is a number; a row of units may stand between the two. All rows from there on belong to the table.
-/// Lines before the headings are not read. Without a row of headings, the last comment before the numbers may have them, one
-/// for each column, as NumPy writes them; or comments that begin with `columns:` and `units:`.
+/// The table begins with the first rows that have numbers in the same two columns. The row above them has the
+/// headings, if none of its fields is a number; a row of units may stand between the two. All rows from there on
+/// belong to the table. Lines before the headings are not read. Without a row of headings, the last comment before
+/// the numbers may have them, one for each column, as NumPy writes them; or comments that begin with `columns:` and
+/// `units:`.
 ///
 /// ```
 /// use viscocontact::rheology::{Experiment, Measurements, Units};
@@ -55,8 +56,8 @@ impl TextTable {
     /// Reads a file.
     ///
     /// # Errors
-    /// If it cannot be read or is no text ([`FileError::Unreadable`](crate::FileError)), or has numbers before its headings
-    /// ([`TextError::Preamble`]).
+    /// If it cannot be read or is no text ([`FileError::Unreadable`](crate::FileError)), or has numbers before its
+    /// headings ([`TextError::Preamble`]).
     pub fn open(path: impl AsRef<Path>, format: TextFormat) -> Result<TextTable> {
         let path = path.as_ref();
         TextTable::named(crate::file::open(path)?, &path.display().to_string(), format)
@@ -128,8 +129,8 @@ impl TextTable {
         self.commented.then(|| TextTable { headings: Vec::new(), line: self.first, commented: false, ..self.clone() })
     }
 
-    /// The same with another heading of a column, counted from 1: with a unit in brackets, `z [nm]`. An empty heading takes
-    /// the column out of the choice.
+    /// The same with another heading of a column, counted from 1: with a unit in brackets, `z [nm]`. An empty heading
+    /// takes the column out of the choice.
     ///
     /// # Errors
     /// If there is no such column.

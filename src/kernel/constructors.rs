@@ -40,7 +40,8 @@ impl InfluenceKernel {
         }
     }
 
-    /// The kernel of the same body on a grid of other cells and the same periods; `None` of coefficients of a user, which belong to cells.
+    /// The kernel of the same body on a grid of other cells and the same periods; `None` of coefficients of a user,
+    /// which belong to cells.
     pub(crate) fn on_other_cells(&self, grid: &Grid) -> Option<Result<InfluenceKernel>> {
         let along = self.periodic.iter().position(|&periodic| periodic).map(|axis| Axis::BOTH[axis]);
         Some(match (self.body, self.periodic, along, self.datum) {
@@ -60,9 +61,8 @@ impl InfluenceKernel {
         })
     }
 
-    /// The kernel of an elastic half-space (Eq. 6 of the [paper](crate::paper)): Love's coefficients, right to 1e-14 at every
-    /// distance and for cells of any aspect ratio up to 1000, zero-padded so that the convolution is
-    /// linear.
+    /// The kernel of an elastic half-space (Eq. 6 of the [paper](crate::paper)): Love's coefficients, right to 1e-14
+    /// at every distance and for cells of any aspect ratio up to 1000, zero-padded so that the convolution is linear.
     ///
     /// Cost, at the first use: one Love integral per cell and one transform.
     ///
@@ -147,9 +147,9 @@ impl InfluenceKernel {
     /// point, and mirrored when the load is.
     ///
     /// # Errors
-    /// If a coefficient is not finite, or beyond ±1e100 m, or differs from the coefficients of its mirror images, or if K is not
-    /// positive definite: unless its spectrum is positive, its least eigenvalue is estimated by the Lanczos method,
-    /// which detects any far below zero. If there is not enough memory for coefficients and spectrum.
+    /// If a coefficient is not finite, or beyond ±1e100 m, or differs from the coefficients of its mirror images, or
+    /// if K is not positive definite: unless its spectrum is positive, its least eigenvalue is estimated by the
+    /// Lanczos method, which detects any far below zero. If there is not enough memory for coefficients and spectrum.
     pub fn from_coefficients(grid: &Grid, coefficient: impl Fn(isize, isize) -> f64) -> Result<InfluenceKernel> {
         let [n1, n2] = grid.cells();
         let layout = Layout { cells: grid.cells(), ends: [Ends::Free; 2], folded: [false; 2] };
@@ -219,8 +219,8 @@ impl InfluenceKernel {
     /// ```
     ///
     /// # Errors
-    /// If the compliance of a wave is not positive, the compliance of the mean is negative, or either is more than 1e100 m; if
-    /// there is not enough memory for them.
+    /// If the compliance of a wave is not positive, the compliance of the mean is negative, or either is more than
+    /// 1e100 m; if there is not enough memory for them.
     pub fn from_spectrum(grid: &Grid, compliance: impl Fn(f64, f64) -> f64) -> Result<InfluenceKernel> {
         let counts = grid.cells().map(|cells| cells / 2 + 1);
         let q = |axis: usize, k: usize| wave_number(k, grid.cells()[axis], grid.spacing()[axis]);
@@ -243,8 +243,8 @@ impl InfluenceKernel {
         Ok(InfluenceKernel::new(grid, Body::User, [true; 2], compliance))
     }
 
-    /// A body that is periodic along `axis`. Its response is the coefficient of a strip of a half-space for each wave along the axis,
-    /// and the addition of a layer for each wave that reaches its base.
+    /// A body that is periodic along `axis`. Its response is the coefficient of a strip of a half-space for each wave
+    /// along the axis, and the addition of a layer for each wave that reaches its base.
     pub(super) fn strips(
         grid: &Grid,
         body: Body,

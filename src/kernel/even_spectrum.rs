@@ -10,9 +10,9 @@ use super::{Ends, Layout, Shares};
 /// A real even function of wave numbers.
 pub(super) type Symbol = Box<dyn Fn(usize, usize) -> f64>;
 
-/// The spectrum of the kernel with this response on the period of a padded layout. The response is taken at the distances of the
-/// layout along an axis that ends, and zero beyond; at wave numbers along a periodic one. For local columns, where ranks share
-/// it out.
+/// The spectrum of the kernel with this response on the period of a padded layout. The response is taken at the
+/// distances of the layout along an axis that ends, and zero beyond; at wave numbers along a periodic one. For local
+/// columns, where ranks share it out.
 pub(super) fn even_spectrum(layout: Layout, shares: Option<&Shares>, response: &dyn Fn([usize; 2]) -> f64) -> Symbol {
     // a kernel made periodic needs half a period at most, and none beyond the cells
     let known = [0, 1].map(|axis| {

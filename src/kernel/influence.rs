@@ -11,9 +11,9 @@ use super::love::{self, Love};
 use super::{Ends, InfluenceKernel, Layer, Layout, Remainder, Shares, wave_number};
 use crate::Grid;
 
-/// The response \[m\] at two indices, one for each axis: a wave number of the grid along a periodic axis, a distance in cells
-/// along an axis that ends. So it is the influence of a cell on another, the compliance of a wave, or, of a body periodic along
-/// one axis, the influence of a cell on another across it for a wave along it.
+/// The response \[m\] at two indices, one for each axis: a wave number of the grid along a periodic axis, a distance
+/// in cells along an axis that ends. So it is the influence of a cell on another, the compliance of a wave, or, of a
+/// body periodic along one axis, the influence of a cell on another across it for a wave along it.
 pub(super) type Response = Arc<dyn Fn([usize; 2]) -> f64 + Send + Sync>;
 
 /// Least compliance of a wave in the approximate inverse, relative to the greatest of all waves.
@@ -80,7 +80,8 @@ impl InfluenceKernel {
         self.periodic.map(|periodic| if periodic { Ends::Periodic } else { Ends::Free })
     }
 
-    /// The factor by which the operator multiplies each wave of the layout; of local columns k2, where ranks share it out.
+    /// The factor by which the operator multiplies each wave of the layout; of local columns k2, where ranks share it
+    /// out.
     pub(super) fn symbol(&self, layout: Layout, shares: Option<&Shares>) -> Symbol {
         if self.periodic == [true; 2] {
             let response = Arc::clone(&self.response);
@@ -89,14 +90,15 @@ impl InfluenceKernel {
         even_spectrum(layout, shares, &*self.response)
     }
 
-    /// A layout without padding, and the factor by which an approximate inverse of the operator multiplies each of its
-    /// waves. Axes that end are mirrored at their ends: on a period, a field that differs from one end to the other would jump.
-    /// Where zeros follow because the transform would be slow without, it is a period: mirrored, the field would jump twice.
+    /// A layout without padding, and the factor by which an approximate inverse of the operator multiplies each of
+    /// its waves. Axes that end are mirrored at their ends: on a period, a field that differs from one end to the
+    /// other would jump. Where zeros follow because the transform would be slow without, it is a period: mirrored,
+    /// the field would jump twice.
     ///
     /// The compliance of a half-space for the wave q is 2/|q| (Westergaard 1939), whatever its boundaries. Its
     /// approximate inverse is |q|/2, except for the mean, whose stiffness is that against a uniform pressure; layers
-    /// have the compliance of their own waves. Other bodies are inverted wave by wave, on the grid taken as periodic (G.
-    /// Strang, Stud. Appl. Math. 74, 1986).
+    /// have the compliance of their own waves. Other bodies are inverted wave by wave, on the grid taken as periodic
+    /// (G. Strang, Stud. Appl. Math. 74, 1986).
     pub(super) fn inverse(&self, cells: [usize; 2], folded: [bool; 2]) -> (Layout, Symbol) {
         // a user's coefficients are known within the grid alone: too few for the period of its mirror image
         let mirrors = |axis: usize| self.body != Body::User && !self.periodic[axis] && is_fast(cells[axis]);
@@ -145,8 +147,9 @@ impl InfluenceKernel {
         (layout, symbol)
     }
 
-    /// The near field of an operator that ends: a layout without padding, and the factor of each of its waves. It is the operator between
-    /// cells that are less than half of the grid apart; farther ones act as if they were nearer, the other way round.
+    /// The near field of an operator that ends: a layout without padding, and the factor of each of its waves. It is
+    /// the operator between cells that are less than half of the grid apart; farther ones act as if they were nearer,
+    /// the other way round.
     pub(super) fn near(&self, cells: [usize; 2], folded: [bool; 2]) -> Option<(Layout, Symbol)> {
         if self.periodic == [true; 2] {
             return None;
@@ -175,8 +178,9 @@ impl InfluenceKernel {
         self.datum
     }
 
-    /// What a unit pressure displaces at any distance along `axis`, in rows aside of it: at the distances of cells, or of each wave
-    /// where bodies are periodic along the other axis. `None` for bodies that are periodic along the axis, and of coefficients.
+    /// What a unit pressure displaces at any distance along `axis`, in rows aside of it: at the distances of cells,
+    /// or of each wave where bodies are periodic along the other axis. `None` for bodies that are periodic along the
+    /// axis, and of coefficients.
     ///
     /// At a `depth` below a half-space, which may be 0, or of the layer.
     pub(crate) fn rows_along(&self, axis: usize, depth: Option<f64>) -> Option<Vec<Row>> {
@@ -262,7 +266,8 @@ impl InfluenceKernel {
         *self.facts.on_itself.get_or_init(|| self.coefficient_at([0; 2]))
     }
 
-    /// The coefficient \[m\] of the cell `at` cells away along each axis of the grid: along periodic axes the mean of the waves.
+    /// The coefficient \[m\] of the cell `at` cells away along each axis of the grid: along periodic axes the mean of
+    /// the waves.
     pub(super) fn coefficient_at(&self, at: [usize; 2]) -> f64 {
         let periods = [0, 1].map(|axis| if self.periodic[axis] { self.grid.cells()[axis] } else { 1 });
         let terms = |axis: usize| if self.periodic[axis] { 0..=periods[axis] / 2 } else { at[axis]..=at[axis] };
@@ -324,8 +329,9 @@ mod tests {
     use super::*;
     use crate::kernel::layer::Layer;
 
-    /// Between cells less than half of the grid apart, and their mirror images, the near field is the operator, on the half-space and on a layer, whether
-    /// the cells make the transform fast or not. Nowhere does it give energy away.
+    /// Between cells less than half of the grid apart, and their mirror images, the near field is the operator, on
+    /// the half-space and on a layer, whether the cells make the transform fast or not. Nowhere does it give energy
+    /// away.
     #[test]
     fn the_near_field_is_the_operator_nearby() {
         for (cells, folded) in [([16, 12], [false; 2]), ([17, 23], [false; 2]), ([16, 24], [true, true])] {

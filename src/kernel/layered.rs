@@ -9,8 +9,8 @@ use crate::error::{KernelError, Result, count_within, within};
 
 /// Longest cell over the thickness: the coefficients have then lost as many digits.
 const LONGEST_CELL: f64 = 1e3;
-/// Longest cell over the thickness, for layers that yield to a pressure only by being squeezed out: the middle of a long cell is
-/// not.
+/// Longest cell over the thickness, for layers that yield to a pressure only by being squeezed out: the middle of a
+/// long cell is not.
 const LONGEST_SQUEEZED: f64 = 2.0;
 
 impl InfluenceKernel {
@@ -94,14 +94,15 @@ impl InfluenceKernel {
         InfluenceKernel::layer_periodic_along(grid, layer, Axis::X2, datum)
     }
 
-    /// A [`Layer`] that is periodic along `axis` (0 is x1, 1 is x2), the grid being one period, and loaded on the grid only
-    /// along the other, as [`InfluenceKernel::periodic_along`]: for each wave κ along the axis the coefficients of cells
-    /// across it: the half-space's, and the layer's addition to them. Approach and `datum` are as in
+    /// A [`Layer`] that is periodic along `axis` (0 is x1, 1 is x2), the grid being one period, and loaded on the
+    /// grid only along the other, as [`InfluenceKernel::periodic_along`]: for each wave κ along the axis the
+    /// coefficients of cells across it: the half-space's, and the layer's addition to them. Approach and `datum` are
+    /// as in
     /// [`InfluenceKernel::layer_line`], which this is where the pressure is uniform along the axis.
     ///
-    /// Cost: a table of integrals for each wave longer than a third of the thickness, when the kernel is made. With 256 cells
-    /// along the axis all of them take 5 ms if the layer is as thick as the period is long, 0.15 s with a tenth of that, and 1 s
-    /// with a hundredth.
+    /// Cost: a table of integrals for each wave longer than a third of the thickness, when the kernel is made. With
+    /// 256 cells along the axis all of them take 5 ms if the layer is as thick as the period is long, 0.15 s with a
+    /// tenth of that, and 1 s with a hundredth.
     ///
     /// # Errors
     /// As [`InfluenceKernel::layer_line`], of lengths and sides along the other axis.

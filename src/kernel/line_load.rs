@@ -34,8 +34,8 @@ pub(crate) struct Strip {
 }
 
 impl Strip {
-    /// The displacement at a distance x from the middle of the cell \[m\], for the wave number `kappa` \[1/m\]: (2/π) ∫ K0(κ |s|) ds or
-    /// −(2/π) ∫ ln(s/d) ds over the cell.
+    /// The displacement at a distance x from the middle of the cell \[m\], for the wave number `kappa` \[1/m\]: (2/π)
+    /// ∫ K0(κ |s|) ds or −(2/π) ∫ ln(s/d) ds over the cell.
     pub(crate) fn at(&self, x: f64, kappa: f64) -> f64 {
         let (a, x) = (0.5 * self.side, x.abs());
         if kappa > 0.0 {
@@ -54,8 +54,8 @@ impl Strip {
         -FRAC_2_PI * (term(x + a) - term(x - a) - self.side)
     }
 
-    /// The displacement at a distance x from the middle of a cell that lies at a `depth` below the points \[m\], for the mean:
-    /// −(1/π) ∫ ln((s² + depth²)/d²) ds.
+    /// The displacement at a distance x from the middle of a cell that lies at a `depth` below the points \[m\], for
+    /// the mean: −(1/π) ∫ ln((s² + depth²)/d²) ds.
     pub(super) fn below(&self, x: f64, depth: f64) -> f64 {
         let a = 0.5 * self.side;
         let ln = |x: f64| 2.0 * (x.hypot(depth) / self.datum).ln();
@@ -67,7 +67,8 @@ impl Strip {
     }
 }
 
-/// (2/π) ∫ K0(κ s) ds over `far` < κs < `far` + `width`, with K0(z) = ∫ e^(−z cosh t) dt over t > 0, integrated over s first.
+/// (2/π) ∫ K0(κ s) ds over `far` < κs < `far` + `width`, with K0(z) = ∫ e^(−z cosh t) dt over t > 0, integrated over
+/// s first.
 fn on_waves(far: f64, width: f64, kappa: f64) -> f64 {
     let mut sum = -0.5 * (-far).exp() * (-width).exp_m1();
     for step in 1..=(LAST / STEP) as usize {

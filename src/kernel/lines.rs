@@ -5,8 +5,8 @@
 //! | whole | Σ x_n e^(−2πi kn/P), 0 ≤ k < P | a complex transform of length P |
 //! | folded | Σ x_n cos(π k(2n+1)/2L), 0 ≤ k < L | a complex transform of length L (Makhoul, IEEE Trans. ASSP 28, 1980) |
 //!
-//! A folded line is half of a line that is even about its beginning; its coefficients equal the coefficients of the whole line, of
-//! period 2L. Lines shorter than their transform are padded with zeros.
+//! A folded line is half of a line that is even about its beginning; its coefficients equal the coefficients of the
+//! whole line, of period 2L. Lines shorter than their transform are padded with zeros.
 
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -153,7 +153,8 @@ impl Line {
         self.inverse.process_with_scratch(buffer, scratch);
     }
 
-    /// Multiplies the real and the imaginary parts of the coefficients of a folded complex line by a spectrum each in one pass, between
+    /// Multiplies the real and the imaginary parts of the coefficients of a folded complex line by a spectrum each in
+    /// one pass, between
     /// [`Line::bare_forward`] and [`Line::bare_inverse`].
     #[inline(always)]
     pub(crate) fn multiply_folded(&self, buffer: &mut [Complex64], first: &[f64], second: &[f64]) {
@@ -200,8 +201,8 @@ fn pairs<T>(buffer: &mut [T]) -> impl Iterator<Item = (&mut T, &mut T)> {
     rising.iter_mut().zip(falling.iter_mut().rev())
 }
 
-/// Splits the transform of a complex line of length P into the transforms of its real and imaginary part: the coefficients k, as
-/// many as `first` and `second` hold, but none at or beyond the end of `k`.
+/// Splits the transform of a complex line of length P into the transforms of its real and imaginary part: the
+/// coefficients k, as many as `first` and `second` hold, but none at or beyond the end of `k`.
 #[inline(always)]
 pub(crate) fn separate(both: &[Complex64], k: Range<usize>, first: &mut [Complex64], second: &mut [Complex64]) {
     let (mut first, mut second, mut start) = (first, second, k.start);

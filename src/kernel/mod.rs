@@ -47,8 +47,8 @@ use line_load::Strip;
 use love::Love;
 use transform::Shares;
 
-/// Memory that making an operator takes, relative to the memory of the operator: its spectrum, and the transform that yields
-/// it.
+/// Memory that making an operator takes, relative to the memory of the operator: its spectrum, and the transform that
+/// yields it.
 const MEMORY_WHILE_MADE: u128 = 3;
 
 /// The discrete influence operator K of a grid: immutable, shared by `Arc` between contacts and threads.
@@ -79,8 +79,8 @@ pub struct InfluenceKernel {
     body: Body,
     /// Axes along which the body and its load are periodic.
     periodic: [bool; 2],
-    /// Distance from a line load at which the displacement is zero \[m\], where one is needed: for a half-space, and for a layer
-    /// on one, periodic along one axis.
+    /// Distance from a line load at which the displacement is zero \[m\], where one is needed: for a half-space, and
+    /// for a layer on one, periodic along one axis.
     datum: Option<f64>,
     response: Response,
     /// Operators on the whole grid, for each choice of folded axes.
@@ -122,8 +122,8 @@ pub(crate) struct LocalKernel {
     operator: Arc<SpectralOperator>,
 }
 
-/// M, the inverse of a kernel that is periodic along both axes, or of a near field, wave by wave. A mean without compliance has a stiffness of its
-/// own.
+/// M, the inverse of a kernel that is periodic along both axes, or of a near field, wave by wave. A mean without
+/// compliance has a stiffness of its own.
 #[derive(Debug, Clone)]
 pub(crate) struct PeriodInverse {
     operator: SpectralOperator,
@@ -179,9 +179,9 @@ impl InfluenceKernel {
         Err(Error::OutOfRange { field: "K p", value, allowed: "finite: the pressure is too great for this kernel" })
     }
 
-    /// The influence coefficient K(i, j) \[m\]: the displacement, over C, of a cell under a unit pressure on the cell `i`
-    /// cells away along x1 and `j` along x2. [`InfluenceKernel::convolve`] is the double sum of
-    /// K(i − k, j − l) p(k, l) over all cells (k, l), Eq. 7.
+    /// The influence coefficient K(i, j) \[m\]: the displacement, over C, of a cell under a unit pressure on the cell
+    /// `i` cells away along x1 and `j` along x2. [`InfluenceKernel::convolve`] is the double sum of K(i − k, j − l)
+    /// p(k, l) over all cells (k, l), Eq. 7.
     ///
     /// K is purely geometric. The coefficients of the source paper follow from it and the contact compliance C
     /// ([`Material::contact_compliance`](crate::rheology::Material::contact_compliance)):
@@ -194,8 +194,9 @@ impl InfluenceKernel {
     /// Along a periodic axis the pressure acts on all images of the cell, and i, i − N and −i are equivalent. Where the
     /// mean displacement is the datum ([`InfluenceKernel::periodic`]), distant coefficients are negative.
     ///
-    /// One coefficient of a half-space takes one Love integral; of a body given by waves, a sum over all of them (along its
-    /// periodic axis, if there is only one), so that for many coefficients the convolution of a unit pressure takes less time.
+    /// One coefficient of a half-space takes one Love integral; of a body given by waves, a sum over all of them
+    /// (along its periodic axis, if there is only one), so that for many coefficients the convolution of a unit
+    /// pressure takes less time.
     ///
     /// ```
     /// use viscocontact::rheology::{Material, Maxwell};
@@ -238,8 +239,8 @@ impl InfluenceKernel {
         Ok(self.operator([false; 2]))
     }
 
-    /// Bytes of the kernel on some rows, operator and workspace, of the approximate inverse, and of the near field and its inverse, or the
-    /// inverse of periodic bodies. An operator that exists already counts zero.
+    /// Bytes of the kernel on some rows, operator and workspace, of the approximate inverse, and of the near field
+    /// and its inverse, or the inverse of periodic bodies. An operator that exists already counts zero.
     pub(crate) fn bytes(&self, rows: &Rows, folded: [bool; 2]) -> [u128; 3] {
         let layout = Layout { cells: rows.cells(), ..self.layout(folded) };
         let shares = Shares::new(&layout, rows);

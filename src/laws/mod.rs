@@ -1,5 +1,5 @@
-//! For tests of your own rheologies, geometries, load histories and attractions: the laws that each must obey, and random models to
-//! test with. Feature `laws`.
+//! For tests of your own rheologies, geometries, load histories and attractions: the laws that each must obey, and
+//! random models to test with. Feature `laws`.
 //!
 //! | model | its laws | random valid models |
 //! |---|---|---|

@@ -118,8 +118,8 @@ pub fn breakpoints_increase(history: &dyn LoadHistory, times: &[f64]) -> Verdict
     Ok(())
 }
 
-/// The loads are valid, finite with forces that press and springs that resist, before and after jumps and between the times. Forces that pull, which
-/// only surfaces that attract each other allow, break it.
+/// The loads are valid, finite with forces that press and springs that resist, before and after jumps and between the
+/// times. Forces that pull, which only surfaces that attract each other allow, break it.
 ///
 /// # Errors
 /// The first violation.

@@ -35,11 +35,12 @@ use std::fmt::{self, Debug};
 
 use crate::error::{Error, Result, UserError, finite, non_negative, positive};
 
-/// The load at the end of a step: the force or the approach of the rigid body, or the spring that drives it, and its tilt.
+/// The load at the end of a step: the force or the approach of the rigid body, or the spring that drives it, and its
+/// tilt.
 ///
-/// Either the normal force or the approach is prescribed, or the far end of a spring between them, and for each of the two tilts either the
-/// angle, or the coordinate of the pivot about which the body rotates freely. The constructors cover the usual cases;
-/// the variants cover every combination.
+/// Either the normal force or the approach is prescribed, or the far end of a spring between them, and for each of
+/// the two tilts either the angle, or the coordinate of the pivot about which the body rotates freely. The
+/// constructors cover the usual cases; the variants cover every combination.
 ///
 /// ```
 /// use viscocontact::load::{Load, Tilt};
@@ -68,13 +69,13 @@ pub enum Load {
         /// Tilt along x1 and along x2.
         tilt: [Tilt; 2],
     },
-    /// A spring drives the body, as the frame of a machine or the cantilever of a microscope: W = k (z − ω), without tension unless
-    /// surfaces attract each other.
+    /// A spring drives the body, as the frame of a machine or the cantilever of a microscope: W = k (z − ω), without
+    /// tension unless surfaces attract each other.
     Spring {
         /// Stiffness k of the spring, > 0 \[N/m\].
         stiffness: f64,
-        /// Position z of its far end \[m\]: the approach of the body if nothing pressed against it. The spring acts at the point about
-        /// which the body tilts, as a given approach does.
+        /// Position z of its far end \[m\]: the approach of the body if nothing pressed against it. The spring acts
+        /// at the point about which the body tilts, as a given approach does.
         drive: f64,
         /// Tilt along x1 and along x2.
         tilt: [Tilt; 2],
@@ -158,8 +159,8 @@ impl Load {
         Load::Approach { approach, tilt: tilt.map(Tilt::Fixed) }
     }
 
-    /// A spring of `stiffness` \[N/m\] whose far end is at `drive` \[m\], on a body that cannot tilt: it carries the force W = k (z − ω), or
-    /// holds the body at ω = z where it does not touch.
+    /// A spring of `stiffness` \[N/m\] whose far end is at `drive` \[m\], on a body that cannot tilt: it carries the
+    /// force W = k (z − ω), or holds the body at ω = z where it does not touch.
     ///
     /// ```
     /// use viscocontact::prelude::*;
@@ -231,7 +232,8 @@ impl Load {
         self.validate()
     }
 
-    /// Accepts loads with finite values: forces may pull, which only a contact of surfaces that attract each other allows.
+    /// Accepts loads with finite values: forces may pull, which only a contact of surfaces that attract each other
+    /// allows.
     pub(crate) fn validate(&self) -> Result<()> {
         let (names, values) = (self.names(), self.values());
         if let Load::Spring { stiffness, .. } = *self {
@@ -286,8 +288,8 @@ impl Load {
         self.kind() == other.kind()
     }
 
-    /// Deviation at `time` from the polynomial through loads of the same kind at other times: force, approach or drive relative to
-    /// `scale`, tilts, points and stiffness relative to their greatest value.
+    /// Deviation at `time` from the polynomial through loads of the same kind at other times: force, approach or
+    /// drive relative to `scale`, tilts, points and stiffness relative to their greatest value.
     pub(crate) fn deviation(&self, time: f64, nodes: &[(f64, Load)], scale: f64) -> f64 {
         let here = self.values();
         let (mut far, mut greatest) = (here, here.map(f64::abs));
@@ -352,11 +354,11 @@ impl Load {
 pub trait LoadHistory: Debug + Send + Sync {
     /// The load at time `t` \[s\]; at a jump, the load after it (right-continuous).
     ///
-    /// A run of fixed steps ([`Stepping::fixed`](crate::run::Stepping::fixed)) asks for the load at the start and at the end of the
-    /// step that it takes, and for the next breakpoint; so a history may read a channel whose values come while the run goes on.
-    /// [Events](crate::run::Run::stop_when) look within that step. A run of adaptive steps asks for loads of the whole history
-    /// before its first step, and then within each step and ahead. A run fails with [`LoadError::OutOfRange`] at a load that is
-    /// not allowed.
+    /// A run of fixed steps ([`Stepping::fixed`](crate::run::Stepping::fixed)) asks for the load at the start and at
+    /// the end of the step that it takes, and for the next breakpoint; so a history may read a channel whose values
+    /// come while the run goes on. [Events](crate::run::Run::stop_when) look within that step. A run of adaptive
+    /// steps asks for loads of the whole history before its first step, and then within each step and ahead. A run
+    /// fails with [`LoadError::OutOfRange`] at a load that is not allowed.
     fn at(&self, t: f64) -> Load;
 
     /// The load just before time `t`; it differs from [`LoadHistory::at`] only at a jump.
@@ -370,8 +372,8 @@ pub trait LoadHistory: Debug + Send + Sync {
         None
     }
 
-    /// Why the last load was none, of a history that can fail ([`FnHistory::fallible`]). Such a load has a value that is not finite; the
-    /// step that needs it then fails with [`Error::User`].
+    /// Why the last load was none, of a history that can fail ([`FnHistory::fallible`]). Such a load has a value that
+    /// is not finite; the step that needs it then fails with [`Error::User`].
     fn failure(&self) -> Option<UserError> {
         None
     }

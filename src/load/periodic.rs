@@ -1,10 +1,11 @@
 use crate::error::{Result, positive, within};
 use crate::load::{Load, LoadHistory, PiecewiseLinear};
 
-/// A piecewise linear load that repeats without end: square, triangle, sawtooth, or any table. Where the last load of the table
-/// differs from the first, it jumps from one period to the next.
+/// A piecewise linear load that repeats without end: square, triangle, sawtooth, or any table. Where the last load of
+/// the table differs from the first, it jumps from one period to the next.
 ///
-/// Jumps and corners are exact at any number of periods: the corner at c of the period number n lies at the f64 nearest to n P + c.
+/// Jumps and corners are exact at any number of periods: the corner at c of the period number n lies at the f64
+/// nearest to n P + c.
 ///
 /// ```
 /// use viscocontact::load::{Load, LoadHistory, Periodic};
@@ -29,8 +30,8 @@ pub struct Periodic {
 }
 
 impl Periodic {
-    /// Repeats a `table`, as of [`PiecewiseLinear::new`], from its first time on; a period lasts from its first time \[s\] to its last.
-    /// Before, the load is the first one.
+    /// Repeats a `table`, as of [`PiecewiseLinear::new`], from its first time on; a period lasts from its first time
+    /// \[s\] to its last. Before, the load is the first one.
     ///
     /// # Errors
     /// If the period is not finite and positive, and as [`PiecewiseLinear::new`].
@@ -44,7 +45,8 @@ impl Periodic {
     /// From t = 0 on `first` for the part `duty` of each `period` \[s\], then `second`.
     ///
     /// # Errors
-    /// If the period is not finite and positive, `duty` not in (0, 1), a load is invalid, or the loads are of different kinds.
+    /// If the period is not finite and positive, `duty` not in (0, 1), a load is invalid, or the loads are of
+    /// different kinds.
     pub fn square(first: Load, second: Load, period: f64, duty: f64) -> Result<Periodic> {
         within("duty cycle", duty, duty > 0.0 && duty < 1.0, "in (0, 1)")?;
         let change = duty * positive("period", period)?;
@@ -67,7 +69,8 @@ impl Periodic {
         Periodic::new(&[(0.0, from), (positive("period", period)?, to)])
     }
 
-    /// The time `phase` of the period number `n`. The sum is rounded after it is taken, so that times never decrease from entry to entry.
+    /// The time `phase` of the period number `n`. The sum is rounded after it is taken, so that times never decrease
+    /// from entry to entry.
     fn time(&self, n: f64, phase: f64) -> f64 {
         n.mul_add(self.length, phase) + self.start
     }

@@ -26,8 +26,8 @@ impl Sinusoid {
     /// Oscillation between `low` and `high` with `frequency` cycles per second \[Hz\].
     ///
     /// # Errors
-    /// If the frequency is not finite and positive, a load is invalid, the loads are of different kinds, or force, approach or drive of
-    /// `low` exceeds the value of `high`.
+    /// If the frequency is not finite and positive, a load is invalid, the loads are of different kinds, or force,
+    /// approach or drive of `low` exceeds the value of `high`.
     pub fn new(low: Load, high: Load, frequency: f64) -> Result<Sinusoid> {
         Load::validate_all("sinusoid", [low, high])?;
         let (field, rule) = ("sinusoid from low to high", "not fall; `Sinusoid::about` takes mean and amplitude");
@@ -35,7 +35,8 @@ impl Sinusoid {
         Ok(Sinusoid { low, high, frequency: positive("frequency", frequency)? })
     }
 
-    /// Oscillation about `mean` by the `amplitude` of its force \[N\], approach or drive \[m\], with `frequency` cycles per second \[Hz\].
+    /// Oscillation about `mean` by the `amplitude` of its force \[N\], approach or drive \[m\], with `frequency`
+    /// cycles per second \[Hz\].
     ///
     /// # Errors
     /// If the amplitude is negative, and as [`Sinusoid::new`].

@@ -11,7 +11,8 @@ impl StepLoad {
     /// `load` applied at t = 0 and held.
     ///
     /// # Errors
-    /// If the load is not finite. A force that pulls is refused by the contact that it acts on, unless surfaces attract each other.
+    /// If the load is not finite. A force that pulls is refused by the contact that it acts on, unless surfaces
+    /// attract each other.
     pub fn new(load: Load) -> Result<StepLoad> {
         load.validate()?;
         Ok(StepLoad { load })

@@ -38,8 +38,8 @@ impl Travel {
         Travel { shape: Arc::new(shape), path: Arc::new(path), track: None }
     }
 
-    /// Adds the gap of a fixed track to the gap of the moving shape: the roughness of the creeping body, or of a rolling
-    /// indenter.
+    /// Adds the gap of a fixed track to the gap of the moving shape: the roughness of the creeping body, or of a
+    /// rolling indenter.
     #[must_use]
     pub fn over(mut self, track: impl Geometry + 'static) -> Travel {
         self.track = Some(Arc::new(track));

@@ -1,7 +1,7 @@
 //! Where a function of one number is least.
 
-/// Where `of` is least between `low` and `high`, in the units of both, if it has one minimum there: by so many golden sections, each of
-/// which leaves 0.618 of the interval (Kiefer, Proc. Am. Math. Soc. 4, 1953).
+/// Where `of` is least between `low` and `high`, in the units of both, if it has one minimum there: by so many golden
+/// sections, each of which leaves 0.618 of the interval (Kiefer, Proc. Am. Math. Soc. 4, 1953).
 ///
 /// ```
 /// let found = viscocontact::numeric::golden_section(0.0, 3.0, 40, |x| (x - 1.0) * (x - 1.0));
@@ -16,8 +16,9 @@ pub fn golden_section(mut low: f64, mut high: f64, sections: usize, of: impl Fn(
     0.5 * (low + high)
 }
 
-/// Where `of` is least between `low` and `high`, in the units of both: at the best of `tried` + 1 even points, refined by the golden section
-/// between its neighbours. A minimum narrower than the distance of the points may be missed.
+/// Where `of` is least between `low` and `high`, in the units of both: at the best of `tried` + 1 even points,
+/// refined by the golden section between its neighbours. A minimum narrower than the distance of the points may be
+/// missed.
 ///
 /// ```
 /// // two minima, of which the second is the lower one

@@ -9,7 +9,8 @@ const NOTHING: f64 = 1e-12;
 const LONGEST_STEP: f64 = 2.0;
 /// Rounds in which long steps are damped.
 const MAX_DAMPED: usize = 100;
-/// Most trials of a step, the share of the promised reduction that needs no further one, and the longest correction over the step.
+/// Most trials of a step, the share of the promised reduction that needs no further one, and the longest correction
+/// over the step.
 const TRIALS: usize = 4;
 const GOOD: f64 = 0.8;
 const MOST_BENT: f64 = 0.75;
@@ -28,7 +29,8 @@ pub struct LeastSquares {
     pub residuals: Vec<f64>,
     /// Steps done.
     pub steps: usize,
-    /// Fractions of the sum of squares by which the last step reduced it, or was to reduce it if that is more, and the step before.
+    /// Fractions of the sum of squares by which the last step reduced it, or was to reduce it if that is more, and
+    /// the step before.
     pub reductions: [f64; 2],
 }
 
@@ -39,10 +41,11 @@ impl LeastSquares {
     }
 }
 
-/// Reduces the sum of squares of `residuals` from `start` until it `is_enough`, or no step reduces it. `slopes` are the derivatives of the residuals, a
-/// column of the same length for each coordinate. Where residuals cannot be computed, a step is rejected. The damping follows the gain ratio (H. B. Nielsen, *Damping
-/// Parameter in Marquardt's Method*, 1999); a step is at most 2 in each coordinate before it is bent to
-/// follow a curved valley, by at most as much, so that logarithms are good ones.
+/// Reduces the sum of squares of `residuals` from `start` until it `is_enough`, or no step reduces it. `slopes` are
+/// the derivatives of the residuals, a column of the same length for each coordinate. Where residuals cannot be
+/// computed, a step is rejected. The damping follows the gain ratio (H. B. Nielsen, *Damping Parameter in Marquardt's
+/// Method*, 1999); a step is at most 2 in each coordinate before it is bent to follow a curved valley, by at most as
+/// much, so that logarithms are good ones.
 ///
 /// ```
 /// use viscocontact::numeric::least_squares;
@@ -92,8 +95,9 @@ pub fn least_squares<E>(
     Ok(at)
 }
 
-/// Coordinates and residuals at the end of a step that is bent to follow a curved valley: there the residuals equal the residuals of the linearised
-/// problem at the end of the straight step, up to what the damped problem cannot remove. None where the residuals cannot be computed.
+/// Coordinates and residuals at the end of a step that is bent to follow a curved valley: there the residuals equal
+/// the residuals of the linearised problem at the end of the straight step, up to what the damped problem cannot
+/// remove. None where the residuals cannot be computed.
 fn follow<E>(
     x: &[f64],
     model: &Linear,
@@ -141,7 +145,8 @@ impl Linear {
         Linear { q: qr.compute_thin_Q(), r: qr.thin_R().to_owned(), slopes, residuals, norms }
     }
 
-    /// The step of least |r + J s|² + λ |D s|², with D the norms of the columns. Coordinates whose step would be too long are damped more.
+    /// The step of least |r + J s|² + λ |D s|², with D the norms of the columns. Coordinates whose step would be too
+    /// long are damped more.
     fn step(&self, damping: f64) -> Col<f64> {
         let (count, right) = (self.norms.len(), -&self.residuals);
         let mut damping = vec![damping; count];

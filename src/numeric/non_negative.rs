@@ -2,8 +2,8 @@
 
 use crate::dense::{Matrix, norm, product};
 
-/// Solves min |A x − b| over x ≥ 0 by the active set method of Lawson & Hanson (*Solving Least Squares
-/// Problems*, 1974, chapter 23), with A of one row for each of `right` and so many columns. The solution is sparse: few of many
+/// Solves min |A x − b| over x ≥ 0 by the active set method of Lawson & Hanson (*Solving Least Squares Problems*,
+/// 1974, chapter 23), with A of one row for each of `right` and so many columns. The solution is sparse: few of many
 /// similar columns are used.
 ///
 /// ```

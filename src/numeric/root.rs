@@ -1,10 +1,11 @@
 //! Roots of a function of one number.
 
-/// The root of a rising function between the lower and the upper end of a bracket. The function gives its value and its slope. Where it has no
-/// root there, the end at which it is nearer to zero; where its value is NaN, NaN.
+/// The root of a rising function between the lower and the upper end of a bracket. The function gives its value and
+/// its slope. Where it has no root there, the end at which it is nearer to zero; where its value is NaN, NaN.
 ///
-/// Newton's steps start `from` a number of the bracket. The bracket is halved where a step leaves it, or where the last step did not halve the value. The
-/// search ends with a step shorter than `tolerance`, relative to the greater of the root and 1.
+/// Newton's steps start `from` a number of the bracket. The bracket is halved where a step leaves it, or where the
+/// last step did not halve the value. The search ends with a step shorter than `tolerance`, relative to the greater
+/// of the root and 1.
 ///
 /// ```
 /// let found = viscocontact::numeric::root([0.0, 2.0], 2.0, 1e-8, |x| [x * x - 2.0, 2.0 * x]);

@@ -23,8 +23,8 @@ pub(crate) const REACH: usize = 3;
 /// A pressure on a grid or on some of its rows, and the gap.
 pub(crate) struct Pressed<'a> {
     pub(crate) grid: &'a Grid,
-    /// First row of pressure and gap if they hold some rows of the grid; `None` if they hold all. Rows beyond the grid belong
-    /// to the next period, or are empty.
+    /// First row of pressure and gap if they hold some rows of the grid; `None` if they hold all. Rows beyond the
+    /// grid belong to the next period, or are empty.
     pub(crate) first: Option<isize>,
     /// Axes along which the bodies are periodic.
     pub(crate) periodic: [bool; 2],
@@ -41,8 +41,8 @@ impl Pressed<'_> {
         self.squares(0).map(|row| self.covered_in_row(row)).sum::<f64>() * self.grid.cell_area()
     }
 
-    /// Squares of four cell centres: their lower corners are a row and a column back, beyond the grid or, at n, across the seam
-    /// of a period.
+    /// Squares of four cell centres: their lower corners are a row and a column back, beyond the grid or, at n,
+    /// across the seam of a period.
     fn squares(&self, axis: usize) -> Range<usize> {
         match self.extent {
             None => 0..0,
@@ -106,9 +106,9 @@ impl Pressed<'_> {
         0.5 * (sides.sum::<f64>() + x1 * y2 - x2 * y1)
     }
 
-    /// Distance of the end of contact from the centre of a cell in contact towards its neighbour out of contact, in cells.
-    /// At the edge of a shape it is the rim of the cell, and so it is where p² has no zero near it, as under a fast growing contact, whose
-    /// pressure drops to zero within a cell.
+    /// Distance of the end of contact from the centre of a cell in contact towards its neighbour out of contact, in
+    /// cells. At the edge of a shape it is the rim of the cell, and so it is where p² has no zero near it, as under a
+    /// fast growing contact, whose pressure drops to zero within a cell.
     fn distance_to_end(&self, from: [isize; 2], to: [isize; 2]) -> f64 {
         const TO_THE_RIM: f64 = 0.5;
         if !self.touchable(to) {

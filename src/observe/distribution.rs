@@ -16,8 +16,8 @@ pub struct Distribution {
     pub share_at_zero: f64,
     /// Width of a bin, in the unit of the quantity; 0 without bins.
     pub width: f64,
-    /// Density in each bin, in 1 over the unit of the quantity; empty if the quantity is zero everywhere. Its sum times the
-    /// width is 1 − `share_at_zero`.
+    /// Density in each bin, in 1 over the unit of the quantity; empty if the quantity is zero everywhere. Its sum
+    /// times the width is 1 − `share_at_zero`.
     pub density: Vec<f64>,
 }
 

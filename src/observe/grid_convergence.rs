@@ -1,18 +1,19 @@
 //! Errors measured from differences between runs: the grid convergence index.
 //!
 //! With the values f₀, f₁, f₂ of three meshes, cells of the sides s₀ > s₁ > s₂, an error C sᵖ gives the differences
-//! d₁ = |f₀ − f₁| = C (s₀ᵖ − s₁ᵖ) and d₂ = C (s₁ᵖ − s₂ᵖ): their ratio gives the observed order p, and
-//! F d₂/((s₁/s₂)ᵖ − 1) the index, an error band of the finest mesh. F is 1.25 where three meshes show the order, or
-//! two are taken to have the first, and 3 where there is none (P. J. Roache, J. Fluids Eng. 116 (1994) 405; I. B. Celik et al., J. Fluids Eng. 130 (2008) 078001).
+//! d₁ = |f₀ − f₁| = C (s₀ᵖ − s₁ᵖ) and d₂ = C (s₁ᵖ − s₂ᵖ): their ratio gives the observed order p, and F
+//! d₂/((s₁/s₂)ᵖ − 1) the index, an error band of the finest mesh. F is 1.25 where three meshes show the order, or two
+//! are taken to have the first, and 3 where there is none (P. J. Roache, J. Fluids Eng. 116 (1994) 405; I. B. Celik
+//! et al., J. Fluids Eng. 130 (2008) 078001).
 
 use crate::numeric::root;
 
-/// The factors of safety: where three meshes show the order, or two have the first one, the least of smooth shapes and punches; and where the
-/// differences show no order.
+/// The factors of safety: where three meshes show the order, or two have the first one, the least of smooth shapes
+/// and punches; and where the differences show no order.
 const OBSERVED: f64 = 1.25;
 const NOT_OBSERVED: f64 = 3.0;
-/// Orders that count as observed. Approach and force are of the first order on punches, of the second on smooth shapes; a
-/// greater order is chance, and a least order of ½ is that of a pressure at a singular edge.
+/// Orders that count as observed. Approach and force are of the first order on punches, of the second on smooth
+/// shapes; a greater order is chance, and a least order of ½ is that of a pressure at a singular edge.
 const LEAST: f64 = 0.5;
 pub(crate) const SINGULAR: f64 = 1.0;
 pub(crate) const SMOOTH: f64 = 2.0;
@@ -31,7 +32,8 @@ pub(crate) struct OfMesh {
 }
 
 impl OfMesh {
-    /// From the sides of the cells of successive meshes and the differences between each two of them, with an order of at most this.
+    /// From the sides of the cells of successive meshes and the differences between each two of them, with an order
+    /// of at most this.
     pub(crate) fn of(sides: &[f64], differences: &[f64], most: f64) -> OfMesh {
         let Some((&last, before)) = differences.split_last() else {
             return OfMesh { error: f64::INFINITY, order: None };
@@ -61,7 +63,8 @@ impl OfMesh {
     }
 }
 
-/// The greatest difference of values over the greatest of the finer ones; 0 where it is rounding, as of a force that is given.
+/// The greatest difference of values over the greatest of the finer ones; 0 where it is rounding, as of a force that
+/// is given.
 pub(crate) fn difference(coarse: &[f64], fine: &[f64]) -> f64 {
     let scale = fine.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
     let most = coarse.iter().zip(fine).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
@@ -85,7 +88,8 @@ pub(crate) fn difference_of_fields((coarse, n): (&[f64], [usize; 2]), (fine, m):
     if sum > 0.0 { off / sum } else { off }
 }
 
-/// The parts of coarse cells that finer ones cover, of n and m cells along the same length: coarse cell, fine cell, part.
+/// The parts of coarse cells that finer ones cover, of n and m cells along the same length: coarse cell, fine cell,
+/// part.
 fn overlaps(n: usize, m: usize) -> Vec<(usize, usize, f64)> {
     let mut found = Vec::with_capacity(n + m);
     for i in 0..n {

@@ -6,8 +6,8 @@ use crate::extent::Extent;
 use crate::parallel::Rows;
 use crate::sum;
 
-/// A contact of fewer cells across, or of fewer cells, which are a disc as wide, is not resolved. By where it lies between the cells the mean
-/// chord makes of such a disc one of 7 to 8.5.
+/// A contact of fewer cells across, or of fewer cells, which are a disc as wide, is not resolved. By where it lies
+/// between the cells the mean chord makes of such a disc one of 7 to 8.5.
 const LEAST_ACROSS: f64 = 8.0;
 const LEAST_CELLS: f64 = 50.0;
 const LEAST_MEAN: f64 = 7.0;
@@ -23,7 +23,8 @@ fn joined(a: Option<[usize; 2]>, b: Option<[usize; 2]>) -> Option<[usize; 2]> {
 /// How contact goes on beyond the first and the last cells of a field along an axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Ends {
-    /// Whether contact ends with the first cell, and with the last. Where it does not, the cells beyond are mirror images.
+    /// Whether contact ends with the first cell, and with the last. Where it does not, the cells beyond are mirror
+    /// images.
     pub(crate) open: [bool; 2],
     /// Whether the first and the last cells are neighbours.
     pub(crate) joined: bool,
@@ -46,8 +47,9 @@ pub(crate) struct Resolution {
 }
 
 impl Outline<'_> {
-    /// Of all cells under pressure, with their number among those of the rows of all ranks, and the rectangle of this rank's rows that
-    /// holds its own: one look at each row. A call of all ranks; the resolution does not depend on their number.
+    /// Of all cells under pressure, with their number among those of the rows of all ranks, and the rectangle of this
+    /// rank's rows that holds its own: one look at each row. A call of all ranks; the resolution does not depend on
+    /// their number.
     pub(crate) fn resolution(&self) -> (Resolution, usize, Option<Extent>) {
         let Outline { rows, pressure, ends: [down, right], .. } = self;
         let ([n1, n2], band, first) = (rows.cells(), rows.band_cells() / rows.cells()[1], rows.own().start);
@@ -93,7 +95,8 @@ impl Outline<'_> {
         (resolution.imaged(self.images), cells, extent)
     }
 
-    /// Of the cells under each of `N` bodies from `first` on, with the rectangles of the field that hold them. In one process.
+    /// Of the cells under each of `N` bodies from `first` on, with the rectangles of the field that hold them. In one
+    /// process.
     pub(crate) fn resolutions<const N: usize>(
         &self,
         first: usize,
@@ -145,8 +148,9 @@ impl Resolution {
         Resolution { cells: cells * images as f64, sides: sides.map(|sides| sides * images as f64) }
     }
 
-    /// Cells across the contact, if they are few: 4/π times the mean chord along the axis on which it is shorter, which is the diameter of a
-    /// disc; at most the `extent` of all cells on a grid of so many `cells`. `None` without contact, and where contact has no end.
+    /// Cells across the contact, if they are few: 4/π times the mean chord along the axis on which it is shorter,
+    /// which is the diameter of a disc; at most the `extent` of all cells on a grid of so many `cells`. `None`
+    /// without contact, and where contact has no end.
     pub(crate) fn few(&self, extent: Extent, cells: [usize; 2], periodic: [bool; 2]) -> Option<f64> {
         let is_line = |axis: usize| cells[axis] == 1 && periodic[axis];
         let line = is_line(0) || is_line(1);

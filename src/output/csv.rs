@@ -54,13 +54,13 @@ fn known(value: Option<f64>) -> String {
 
 /// A run as a CSV file with one row per step, each passed to the operating system when its `record` returns.
 ///
-/// The first line is `#` and the [`Metadata`] as JSON, the second the names of the columns with their units, separated
-/// by commas: `time [s]`, `step length [s]`, `force [N]`, `approach [m]`, `tilt 1 [rad]`, `tilt 2 [rad]`,
-/// `moment 1 [N m]`, `moment 2 [N m]`, `contact area [m2]`, `contact cells`, `mean pressure [Pa]`,
-/// `max pressure [Pa]`, cost and accuracy of the step as in [`StepReport`] (`time error` is
-/// empty where nothing was estimated), and additional columns of your choice. A [`Contact`] is one in space or one on elastic
-/// states; moments and the greatest pressure of the latter are empty.
-/// Where [ranks](crate::parallel) share out the contact, all of them make and write the history, and rank 0 has the file.
+/// The first line is `#` and the [`Metadata`] as JSON, the second the names of the columns with their units,
+/// separated by commas: `time [s]`, `step length [s]`, `force [N]`, `approach [m]`, `tilt 1 [rad]`, `tilt 2 [rad]`,
+/// `moment 1 [N m]`, `moment 2 [N m]`, `contact area [m2]`, `contact cells`, `mean pressure [Pa]`, `max pressure
+/// [Pa]`, cost and accuracy of the step as in [`StepReport`] (`time error` is empty where nothing was estimated), and
+/// additional columns of your choice. A [`Contact`] is one in space or one on elastic states; moments and the
+/// greatest pressure of the latter are empty. Where [ranks](crate::parallel) share out the contact, all of them make
+/// and write the history, and rank 0 has the file.
 /// [`Run::samples`](crate::run::Run::samples) has rows between the ends of steps: pass the contact and the report of each sample.
 /// Numbers have enough digits to be read back bitwise. In Python: `pandas.read_csv(path, comment="#")`.
 ///
@@ -92,9 +92,10 @@ impl CsvHistory {
     /// A file for the history of `contact`, with `additional` columns after the standard ones.
     ///
     /// # Errors
-    /// If the file cannot be written, exists where [`Earlier`] refuses it, is no file ([`FileError::NotAFile`](crate::FileError::NotAFile)), or no history with these
-    /// columns that could be continued; or if the name of a column is empty, already used, or contains `#`, a quote or a control character, which readers would
-    /// misinterpret.
+    /// If the file cannot be written, exists where [`Earlier`] refuses it, is no file
+    /// ([`FileError::NotAFile`](crate::FileError::NotAFile)), or no history with these columns that could be
+    /// continued; or if the name of a column is empty, already used, or contains `#`, a quote or a control character,
+    /// which readers would misinterpret.
     pub fn create(
         path: impl AsRef<Path>,
         metadata: &Metadata,

@@ -34,8 +34,8 @@ impl Field {
     /// All fields.
     pub const ALL: [Field; 4] = [Field::Pressure, Field::Displacement, Field::Gap, Field::Traction];
 
-    /// The fields of a contact: all of them where surfaces [attract](crate::adhesion) each other, else all but [`Field::Traction`], which
-    /// is the pressure then.
+    /// The fields of a contact: all of them where surfaces [attract](crate::adhesion) each other, else all but
+    /// [`Field::Traction`], which is the pressure then.
     pub fn of<'a>(contact: impl Into<Fields<'a>>) -> &'static [Field] {
         if contact.into().attraction().is_some() { &Field::ALL } else { &Field::ALL[..3] }
     }
@@ -50,8 +50,8 @@ impl Field {
         NAMES_AND_UNITS[self as usize].1
     }
 
-    /// Values in the current state of the contact, on the local rows where ranks share it out. `buffer` receives the values of
-    /// a field that the contact does not store.
+    /// Values in the current state of the contact, on the local rows where ranks share it out. `buffer` receives the
+    /// values of a field that the contact does not store.
     pub(crate) fn values<'a>(self, contact: Fields<'a>, buffer: &'a mut Vec<f64>) -> Result<&'a [f64]> {
         match self {
             Field::Pressure => Ok(contact.pressure()),

@@ -13,8 +13,8 @@ const PIECE_CELLS: usize = 1 << 16;
 /// Least columns at a time: shorter pieces of a row are slow to read.
 const LEAST_COLUMNS: usize = 8;
 
-/// The values of some fields, each to be taken once, in this order. Where ranks share out the contact, rank 0 takes the values,
-/// and the other ranks send their rows piece by piece.
+/// The values of some fields, each to be taken once, in this order. Where ranks share out the contact, rank 0 takes
+/// the values, and the other ranks send their rows piece by piece.
 #[derive(Debug)]
 pub(super) struct FieldValues<'a> {
     contact: Fields<'a>,

@@ -47,8 +47,8 @@ impl Metadata {
         Metadata { title: title.into(), notes: Vec::new() }
     }
 
-    /// Adds a note on facts that the contact does not hold, such as the shape of the bodies, the specimen or the operator. A
-    /// note of the same key is replaced.
+    /// Adds a note on facts that the contact does not hold, such as the shape of the bodies, the specimen or the
+    /// operator. A note of the same key is replaced.
     #[must_use]
     pub fn note(mut self, key: impl Into<String>, value: impl Into<String>) -> Metadata {
         let (key, value) = (key.into(), value.into());
@@ -70,14 +70,14 @@ impl Metadata {
     }
 
     /// The whole description as JSON on a single line: `title`, `notes`, `crate` and `version`, `grid` (`cells`,
-    /// `spacing` and `lengths` \[m\]), `bodies`, `kernel`, `settings` (their fields), `material`, `temperature` if it changes,
-    /// `units` of all values written, and `conventions`.
+    /// `spacing` and `lengths` \[m\]), `bodies`, `kernel`, `settings` (their fields), `material`, `temperature` if it
+    /// changes, `units` of all values written, and `conventions`.
     ///
-    /// `material` has an entry for each body: `poisson` or `bulk_modulus` \[Pa\], and `contact_creep`, the series of C(t) with
-    /// `glassy` \[1/Pa\], `fluidity` \[1/(Pa s)\] and `terms` of \[compliance, retardation time\]; a body without a series has
-    /// `rheology`, as Rust prints it. `temperature` has the `reference`, the constants of the law, and the `table` of \[time,
-    /// temperature\], or the `corners` of a function. Of a contact on elastic states there is no more than title, notes, crate and
-    /// version, units and conventions.
+    /// `material` has an entry for each body: `poisson` or `bulk_modulus` \[Pa\], and `contact_creep`, the series of
+    /// C(t) with `glassy` \[1/Pa\], `fluidity` \[1/(Pa s)\] and `terms` of \[compliance, retardation time\]; a body
+    /// without a series has `rheology`, as Rust prints it. `temperature` has the `reference`, the constants of the
+    /// law, and the `table` of \[time, temperature\], or the `corners` of a function. Of a contact on elastic states
+    /// there is no more than title, notes, crate and version, units and conventions.
     pub fn json(&self, contact: &impl Contact) -> String {
         self.of(contact.in_space())
     }

@@ -14,17 +14,17 @@
 //! You choose which [`Field`]s are written. A frame is complete on disk when its `record` returns: if a run is killed,
 //! all earlier frames are readable.
 //!
-//! Files of an earlier run are replaced by these rules. Series and histories grow with a run: [`Earlier`] says whether a folder
-//! with frames or an existing file is refused, removed or continued.
-//! Files that are written at once (fields, stresses, pictures, animations, checkpoints) replace an existing file when the new one
-//! is complete; if the path is a link, its target is replaced. Folders, devices, pipes and sockets are never replaced:
+//! Files of an earlier run are replaced by these rules. Series and histories grow with a run: [`Earlier`] says
+//! whether a folder with frames or an existing file is refused, removed or continued. Files that are written at once
+//! (fields, stresses, pictures, animations, checkpoints) replace an existing file when the new one is complete; if
+//! the path is a link, its target is replaced. Folders, devices, pipes and sockets are never replaced:
 //! [`FileError::NotAFile`](crate::FileError::NotAFile). While a file is being written, the process ID and `.part` are appended to its
 //! name; a process that is killed leaves the file under that name.
 //!
-//! Where [ranks](crate::parallel) share out a contact, all of them call a function that writes it. Rank 0 writes the same bytes
-//! that one process writes; the other ranks send their rows piece by piece. No rank holds a whole field, and no other rank needs
-//! the disk. All ranks get the same error. Each rank creates a series: all must see the same folder, or the folder must be new
-//! to each.
+//! Where [ranks](crate::parallel) share out a contact, all of them call a function that writes it. Rank 0 writes the
+//! same bytes that one process writes; the other ranks send their rows piece by piece. No rank holds a whole field,
+//! and no other rank needs the disk. All ranks get the same error. Each rank creates a series: all must see the same
+//! folder, or the folder must be new to each.
 //!
 //! A write that fails, for instance on a full disk, leaves earlier output intact and no partial output of its own. It
 //! can be repeated.
@@ -69,7 +69,8 @@ pub enum Earlier {
     Refuse,
     /// They are removed first.
     Replace,
-    /// They go on after the state of the contact, and what comes later is removed: so a run that is resumed from a checkpoint, or begins, writes one file or folder.
+    /// They go on after the state of the contact, and what comes later is removed: so a run that is resumed from a
+    /// checkpoint, or begins, writes one file or folder.
     Continue,
 }
 

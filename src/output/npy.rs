@@ -37,8 +37,8 @@ pub fn write_npy(path: impl AsRef<Path>, grid: &Grid, values: &[f64]) -> Result<
     })
 }
 
-/// Writes a field of the contact as an NPY file, like [`write_npy`]: a call of all [ranks](crate::parallel) that share out the
-/// contact, of which rank 0 writes, and none holds the whole. An existing file is replaced.
+/// Writes a field of the contact as an NPY file, like [`write_npy`]: a call of all [ranks](crate::parallel) that
+/// share out the contact, of which rank 0 writes, and none holds the whole. An existing file is replaced.
 ///
 /// Needs the feature `npy`.
 ///

@@ -58,8 +58,8 @@ impl FrameSeries {
     /// A series of `contact` in `folder`, which is created if it does not exist.
     ///
     /// # Errors
-    /// If the folder cannot be used, contains frames where [`Earlier`] refuses them or one that cannot be read where they are continued, or a field is requested
-    /// twice.
+    /// If the folder cannot be used, contains frames where [`Earlier`] refuses them or one that cannot be read where
+    /// they are continued, or a field is requested twice.
     pub fn create<'a>(
         folder: impl AsRef<Path>,
         format: Format,

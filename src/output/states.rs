@@ -115,7 +115,8 @@ pub fn write_states(path: impl AsRef<Path>, states: &ElasticStates, metadata: &M
 /// Needs the feature `npy`.
 ///
 /// # Errors
-/// If the file cannot be read, or its arrays are no elastic states ([`FileError::Unreadable`](crate::FileError::Unreadable)).
+/// If the file cannot be read, or its arrays are no elastic states
+/// ([`FileError::Unreadable`](crate::FileError::Unreadable)).
 pub fn read_states(path: impl AsRef<Path>) -> Result<Arc<ElasticStates>> {
     let path = path.as_ref();
     let refused = |reason: String| refused(path, &reason);

@@ -18,13 +18,14 @@ const NOTE: &str = "Pa; tension is positive; x3 is the depth below the surface";
 
 /// Writes the stress in a volume to a file, which replaces an earlier one.
 ///
-/// An NPZ archive contains `time` \[s\], the cell centres `x1` and `x2` and the depths `x3` \[m\], the components `s11`, `s22`,
-/// `s33`, `s12`, `s13`, `s23`, `von_mises` and `tresca` \[Pa\] as arrays of shape (n1, n2, depths), the `pressure` \[Pa\] of
-/// shape (n1, n2), and the [`Metadata`] as the JSON text `metadata`.
+/// An NPZ archive contains `time` \[s\], the cell centres `x1` and `x2` and the depths `x3` \[m\], the components
+/// `s11`, `s22`, `s33`, `s12`, `s13`, `s23`, `von_mises` and `tresca` \[Pa\] as arrays of shape (n1, n2, depths), the
+/// `pressure` \[Pa\] of shape (n1, n2), and the [`Metadata`] as the JSON text `metadata`.
 ///
-/// A VTK file is a rectilinear grid (`.vtr`), which ParaView opens: its points lie below the centres of the cells, with x1 and x2
-/// as x and y and the depth as z. `stress [Pa]` is a symmetric tensor, `von Mises stress [Pa]` and `Tresca stress [Pa]` are
-/// scalars; `TimeValue` \[s\] and the [`Metadata`] as the JSON text `metadata` are field data.
+/// A VTK file is a rectilinear grid (`.vtr`), which ParaView opens: its points lie below the centres of the cells,
+/// with x1 and x2 as x and y and the depth as z. `stress [Pa]` is a symmetric tensor, `von Mises stress [Pa]` and
+/// `Tresca stress [Pa]` are scalars; `TimeValue` \[s\] and the [`Metadata`] as the JSON text `metadata` are field
+/// data.
 ///
 /// ```
 /// # #[cfg(feature = "npy")] {

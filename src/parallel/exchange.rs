@@ -5,8 +5,8 @@ use std::ops::Range;
 use super::Rows;
 
 impl Rows {
-    /// Sends each rank its piece, and returns the `count` numbers of each rank, one rank after the other: zeros if a rank is
-    /// lost. A call of all ranks.
+    /// Sends each rank its piece, and returns the `count` numbers of each rank, one rank after the other: zeros if a
+    /// rank is lost. A call of all ranks.
     pub(crate) fn exchange(&self, pieces: Vec<Vec<f64>>, count: impl Fn(usize) -> usize) -> Vec<f64> {
         let sent: Vec<usize> = pieces.iter().map(Vec::len).collect();
         let counts: Vec<usize> = (0..self.ranks()).map(count).collect();

@@ -9,8 +9,8 @@ use crate::file::{Part, failed};
 use crate::parallel::Rows;
 
 impl Rows {
-    /// Replaces a file when its new contents are complete and on the medium. A call of all ranks: all of them run `write`, rank 0
-    /// with the file. An error of one of them is an error on all, and leaves the old file.
+    /// Replaces a file when its new contents are complete and on the medium. A call of all ranks: all of them run
+    /// `write`, rank 0 with the file. An error of one of them is an error on all, and leaves the old file.
     pub(crate) fn replace_file(
         &self,
         path: &Path,

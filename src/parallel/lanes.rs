@@ -39,8 +39,9 @@ pub(crate) fn for_each_share<'a, T: Task + Sync>(
     });
 }
 
-/// Halves the units, and the data with them, down to single ones, and calls `job` with the number of each: the halves in parallel
-/// if they are `shared`. `cut` splits data before the unit of this number, counted from the first unit of the data.
+/// Halves the units, and the data with them, down to single ones, and calls `job` with the number of each: the halves
+/// in parallel if they are `shared`. `cut` splits data before the unit of this number, counted from the first unit of
+/// the data.
 pub(crate) fn fork<D: Send>(
     units: Range<usize>,
     shared: bool,
@@ -91,8 +92,9 @@ pub(crate) fn join(shared: bool, first: impl FnOnce() + Send, second: impl FnOnc
     second();
 }
 
-/// Runs `job`, which works on fields of so many cells, on a thread of the pool if threads share the work. A call from a thread
-/// outside of the pool goes through its queue, which allocates a block for 63 calls: many loops go through it once.
+/// Runs `job`, which works on fields of so many cells, on a thread of the pool if threads share the work. A call from
+/// a thread outside of the pool goes through its queue, which allocates a block for 63 calls: many loops go through
+/// it once.
 pub(crate) fn in_pool<T: Send>(cells: usize, job: impl FnOnce() -> T + Send) -> T {
     #[cfg(feature = "rayon")]
     if lanes(cells) > 1 {
@@ -116,11 +118,12 @@ pub(crate) fn lanes(cells: usize) -> usize {
 #[cfg(feature = "rayon")]
 const MIN_SHARED_CELLS: usize = 1 << 15;
 
-/// Cells that a thread passes over at a time. Sums are taken over bands of about so many cells, whatever the number of threads.
+/// Cells that a thread passes over at a time. Sums are taken over bands of about so many cells, whatever the number
+/// of threads.
 pub(crate) const BAND_CELLS: usize = 1 << 13;
 
-/// Calls `job` with each band of some fields, and the number of its first cell. The first field has one value for each cell, the
-/// others may have none or several.
+/// Calls `job` with each band of some fields, and the number of its first cell. The first field has one value for
+/// each cell, the others may have none or several.
 pub(crate) fn for_each_band<T: Send, const M: usize>(fields: [&mut [T]; M], job: impl Fn(usize, [&mut [T]; M]) + Sync) {
     let cells = fields.first().map_or(0, |field| field.len());
     let bands = 0..cells.div_ceil(BAND_CELLS);
@@ -139,8 +142,8 @@ pub(crate) fn cut<T, const M: usize>(fields: [&mut [T]; M], at: usize) -> [[&mut
     [before, halves.map(|(_, after)| after)]
 }
 
-/// Sets `target` to `kept` target + Σ weight column, summed in this order: bitwise as one element after the other. Written in
-/// vectors, since builds that are optimised a little only find none.
+/// Sets `target` to `kept` target + Σ weight column, summed in this order: bitwise as one element after the other.
+/// Written in vectors, since builds that are optimised a little only find none.
 pub(crate) fn combine(target: &mut [f64], kept: f64, weights: [f64; 3], columns: [&[f64]; 3]) {
     Arch::new().dispatch(Combination { target, kept, weights, columns });
 }

@@ -1,7 +1,7 @@
 //! One contact on several ranks: processes, or threads that play processes, each of which has some rows of the grid.
 //!
-//! A contact that outgrows a machine is shared out over several. The program is started once on each of them, makes the same
-//! calls there, and adds one line to its scene, [`Builder::ranks`](crate::contact::Builder::ranks):
+//! A contact that outgrows a machine is shared out over several. The program is started once on each of them, makes
+//! the same calls there, and adds one line to its scene, [`Builder::ranks`](crate::contact::Builder::ranks):
 //!
 //! ```
 //! use viscocontact::prelude::*;
@@ -23,13 +23,14 @@
 //! # Ok::<(), Error>(())
 //! ```
 //!
-//! The result does not depend on the number of ranks, bit by bit: sums are taken over bands of whole rows, and the bands are
-//! added in the same order on every rank. Ranks compute the whole grid, as far as symmetry does not leave less: they pass over
+//! The result does not depend on the number of ranks, bit by bit: sums are taken over bands of whole rows, and the
+//! bands are added in the same order on every rank. Ranks compute the whole grid, as far as symmetry does not leave
+//! less: they pass over
 //! [`Settings::window`](crate::contact::Settings::window). A contact without ranks has the same bits if that setting is false;
-//! with its default, true, its results differ from theirs by the tolerance of the solver. A [`StepReport`](crate::contact::StepReport) is the same on all ranks; fields are
-//! fields of the [local rows](crate::fields::Fields::rows), and [`gathered`](crate::fields::Fields::gathered) brings
-//! them to one rank. Rows are given out in bands of about 8192 cells: more ranks than bands are possible, and have
-//! nothing to do.
+//! with its default, true, its results differ from theirs by the tolerance of the solver. A
+//! [`StepReport`](crate::contact::StepReport) is the same on all ranks; fields are fields of the [local
+//! rows](crate::fields::Fields::rows), and [`gathered`](crate::fields::Fields::gathered) brings them to one rank.
+//! Rows are given out in bands of about 8192 cells: more ranks than bands are possible, and have nothing to do.
 //!
 //! Every call that computes is a call of all ranks, in the same order and with the same arguments: steps, runs, and
 //! observations that look at all cells ([`moment`](crate::fields::Fields::moment),
@@ -38,8 +39,8 @@
 //! checkpoints. What a rank has by itself may be read by one
 //! alone: time, force, approach, tilt, contact cells, local rows.
 //!
-//! If a rank leaves, the call that misses it returns [`RanksError::Left`] and leaves the contact as it was. An observation without
-//! an error to return is NaN, and the next call returns the error.
+//! If a rank leaves, the call that misses it returns [`RanksError::Left`] and leaves the contact as it was. An
+//! observation without an error to return is NaN, and the next call returns the error.
 //!
 //! | covered | refused, by [`Error::NotCovered`](crate::Error::NotCovered) |
 //! |---|---|
@@ -52,13 +53,14 @@
 //!
 //! Surfaces that attract each other are refused, too.
 //!
-//! Files and checkpoints are written by rank 0, files with the same bytes for any number of ranks; the other ranks send it their rows a
-//! piece at a time. A checkpoint is read by all ranks: `ViscoelasticContact::resume`.
+//! Files and checkpoints are written by rank 0, files with the same bytes for any number of ranks; the other ranks
+//! send it their rows a piece at a time. A checkpoint is read by all ranks: `ViscoelasticContact::resume`.
 //!
-//! No rank needs memory for the whole grid: [`Builder::ranks`](crate::contact::Builder::ranks), given before the geometry, has
-//! each evaluate it on own rows, random surfaces are made by [`Rough::shared`](crate::geometry::Rough::shared), coefficients of
-//! the kernel are computed by rows and kept by columns. [`Builder::memory`](crate::contact::Builder::memory) returns the bytes
-//! of a rank. Clones and snapshots are of the same ranks.
+//! No rank needs memory for the whole grid: [`Builder::ranks`](crate::contact::Builder::ranks), given before the
+//! geometry, has each evaluate it on own rows, random surfaces are made by
+//! [`Rough::shared`](crate::geometry::Rough::shared), coefficients of the kernel are computed by rows and kept by
+//! columns. [`Builder::memory`](crate::contact::Builder::memory) returns the bytes of a rank. Clones and snapshots
+//! are of the same ranks.
 
 mod exchange;
 mod file;

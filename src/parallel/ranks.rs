@@ -24,8 +24,8 @@ pub trait Ranks: Debug + Send + Sync {
     /// If a rank has left.
     fn gather(&self, own: &[f64], counts: &[usize], all: &mut [f64]) -> Result<(), RanksError>;
 
-    /// Sends to each rank r the next `send_counts[r]` numbers of `send`, and receives from it the next `receive_counts[r]` of
-    /// `received`; r may be the rank itself.
+    /// Sends to each rank r the next `send_counts[r]` numbers of `send`, and receives from it the next
+    /// `receive_counts[r]` of `received`; r may be the rank itself.
     ///
     /// # Errors
     /// If a rank has left.

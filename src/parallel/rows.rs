@@ -9,9 +9,10 @@ use crate::sum;
 
 /// The computed rows of a grid, cut into bands. This process holds all of them, or some if ranks share them out.
 ///
-/// Bands are whole tiles of the transforms, folded or not (the preconditioner mirrors axes that end), about [`BAND_CELLS`]
-/// cells, or one tile where that is more. A sum is taken in each band, and over the bands by halves: so it does not depend on
-/// the number of threads or ranks. A process by itself does this without a copy, a call or an allocation.
+/// Bands are whole tiles of the transforms, folded or not (the preconditioner mirrors axes that end), about
+/// [`BAND_CELLS`] cells, or one tile where that is more. A sum is taken in each band, and over the bands by halves:
+/// so it does not depend on the number of threads or ranks. A process by itself does this without a copy, a call or
+/// an allocation.
 #[derive(Debug, Clone)]
 pub(crate) struct Rows {
     /// Rows of all ranks, and cells of a row.
@@ -184,7 +185,8 @@ impl Rows {
         self.sum_of(|band| sum::sum_of_pairs(&a[band.clone()], &b[band], &f))
     }
 
-    /// Merges the numbers of the ranks, rank by rank: for a maximum or a minimum. A sum would depend on the number of ranks: see
+    /// Merges the numbers of the ranks, rank by rank: for a maximum or a minimum. A sum would depend on the number of
+    /// ranks: see
     /// [`Rows::merge`].
     pub(crate) fn join<const K: usize>(
         &self,
@@ -246,8 +248,8 @@ impl Rows {
         buffers
     }
 
-    /// Sends numbers to each rank, and receives numbers from each; if a rank is lost, `received` stays as it is. A process by itself
-    /// receives what it sends.
+    /// Sends numbers to each rank, and receives numbers from each; if a rank is lost, `received` stays as it is. A
+    /// process by itself receives what it sends.
     pub(crate) fn exchange_into(
         &self,
         (send, send_counts): (&[f64], &[usize]),
@@ -257,8 +259,9 @@ impl Rows {
         shared.call(|group| group.exchange(send, send_counts, received, receive_counts));
     }
 
-    /// Runs `job`, a call of all ranks, and returns its result, or the loss of a rank, in `job` or before it: sums and gathered values of `job`
-    /// are NaN then. The loss is returned once. Nothing is sent to other ranks, nor waited for.
+    /// Runs `job`, a call of all ranks, and returns its result, or the loss of a rank, in `job` or before it: sums
+    /// and gathered values of `job` are NaN then. The loss is returned once. Nothing is sent to other ranks, nor
+    /// waited for.
     pub(crate) fn unless_lost<T>(&self, job: impl FnOnce() -> Result<T>) -> Result<T> {
         let done = job();
         match self.shared.as_ref().and_then(|shared| lock(&shared.lost).take()) {

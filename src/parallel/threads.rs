@@ -19,8 +19,8 @@ pub struct Threads {
 impl Threads {
     /// Runs `job` on `size` threads, each with its rank; returns the results in the order of the ranks.
     ///
-    /// A rank that is done, or panics, has left: calls in which others wait for it fail with [`RanksError::Left`]. When all
-    /// have ended, the panic of a rank continues in the caller.
+    /// A rank that is done, or panics, has left: calls in which others wait for it fail with [`RanksError::Left`].
+    /// When all have ended, the panic of a rank continues in the caller.
     ///
     /// # Errors
     /// If `size` is zero, or more than 1024.

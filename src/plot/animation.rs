@@ -15,9 +15,9 @@ use crate::plot::{ColorScale, Map, Picture, color_scale};
 
 /// A run as an animated GIF that repeats endlessly.
 ///
-/// Frames are written as they are recorded, to a file whose name ends in the process ID and `.part`; browsers show it as
-/// far as it is written. [`Animation::finish`] gives it its final name. An animation that is dropped before that leaves
-/// the partial file.
+/// Frames are written as they are recorded, to a file whose name ends in the process ID and `.part`; browsers show it
+/// as far as it is written. [`Animation::finish`] gives it its final name. An animation that is dropped before that
+/// leaves the partial file.
 ///
 /// ```
 /// use viscocontact::plot::Animation;
@@ -61,8 +61,8 @@ impl Animation {
     /// finished.
     ///
     /// # Errors
-    /// If the extension is not `.gif`, the range is not increasing, `seconds` is not in \[0.02, 600\], or the file cannot
-    /// be written.
+    /// If the extension is not `.gif`, the range is not increasing, `seconds` is not in \[0.02, 600\], or the file
+    /// cannot be written.
     pub fn create(path: impl AsRef<Path>, field: Field, range: [f64; 2], seconds: f64) -> Result<Animation> {
         let path = path.as_ref().to_owned();
         check_extension(&path, &["gif"])?;
@@ -97,10 +97,12 @@ impl Animation {
         self.record_picture(&map.draw()?)
     }
 
-    /// Records any picture as a frame. Its colours are mapped to the nearest of 256: the colours of maps and curves, and greys.
+    /// Records any picture as a frame. Its colours are mapped to the nearest of 256: the colours of maps and curves,
+    /// and greys.
     ///
     /// # Errors
-    /// If its size differs from the first picture's, or the file cannot be written. The file then contains nothing of it.
+    /// If its size differs from the first picture's, or the file cannot be written. The file then contains nothing of
+    /// it.
     pub fn record_picture(&mut self, picture: &Picture) -> Result<()> {
         let size = picture.size();
         let refused = |error| failed(&self.path, io::Error::other(error));

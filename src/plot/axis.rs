@@ -63,8 +63,8 @@ impl Axis {
         Axis { label, ticks, minor: Vec::new(), factor, ends: [low, high], logarithmic: false }
     }
 
-    /// A logarithmic axis between two values in SI. Numbers from 0.001 to 10 000 are written out, in a unit with a prefix if
-    /// they are not so short without; others are powers of ten without a prefix.
+    /// A logarithmic axis between two values in SI. Numbers from 0.001 to 10 000 are written out, in a unit with a
+    /// prefix if they are not so short without; others are powers of ten without a prefix.
     pub(super) fn logarithmic(quantity: &Quantity, ends: [f64; 2], room: Room) -> Axis {
         let powers = |factor: f64| ends.map(|end| (end * factor).log10());
         let is_plain = |factor: f64| powers(factor)[0].ceil() >= -3.0 && powers(factor)[1].floor() <= 4.0;

@@ -132,13 +132,15 @@ impl Canvas {
         self.fill(area.map(PathBuilder::from_rect), color, percent);
         let (width, height) = (short(right - left), short(bottom - top));
         self.element(format!(
-            "<rect x=\"{}\" y=\"{}\" width=\"{width}\" height=\"{height}\" fill=\"{color}\" fill-opacity=\"{percent}%\"/>",
+            "<rect x=\"{}\" y=\"{}\" width=\"{width}\" height=\"{height}\" fill=\"{color}\" \
+            fill-opacity=\"{percent}%\"/>",
             short(left),
             short(top),
         ));
     }
 
-    /// A black text of `size` pixels per em whose baseline starts, is centred or ends at a point; upright texts run upwards.
+    /// A black text of `size` pixels per em whose baseline starts, is centred or ends at a point; upright texts run
+    /// upwards.
     pub(super) fn text(&mut self, text: &str, at: [f64; 2], size: f64, anchor: Anchor, upright: bool) {
         let [x, y] = at;
         // XML does not allow all characters

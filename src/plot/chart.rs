@@ -99,9 +99,9 @@ impl Chart {
         self.curves.push(Curve { label: label.into(), points, color, style });
     }
 
-    /// Adds curves that a parameter orders, such as a speed, each with its value in the unit of the quantity. Their colours
-    /// show the value, with a colour bar beside the chart in place of a legend. The bar is logarithmic if the values are
-    /// positive and differ by more than a factor of 30. A chart has the bar of its last family.
+    /// Adds curves that a parameter orders, such as a speed, each with its value in the unit of the quantity. Their
+    /// colours show the value, with a colour bar beside the chart in place of a legend. The bar is logarithmic if the
+    /// values are positive and differ by more than a factor of 30. A chart has the bar of its last family.
     ///
     /// ```
     /// use viscocontact::plot::{Chart, Legend, Quantity, Style};

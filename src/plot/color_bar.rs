@@ -11,8 +11,8 @@ const TRIANGLE: f64 = 26.0;
 /// Length of ticks in pixels.
 const TICK: f64 = 7.0;
 
-/// Draws the bar of `axis` to the right of `left` from `top` to `bottom`, with triangles at its lower and upper end where
-/// values lie `beyond` it; `color` is the colour at a fraction of the axis.
+/// Draws the bar of `axis` to the right of `left` from `top` to `bottom`, with triangles at its lower and upper end
+/// where values lie `beyond` it; `color` is the colour at a fraction of the axis.
 pub(super) fn draw(
     canvas: &mut Canvas,
     left: f64,

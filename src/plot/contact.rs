@@ -35,8 +35,9 @@ impl Map {
         Map::field(contact, Field::Displacement)?.outline_contact(contact)
     }
 
-    /// The net traction between the bodies, with the contact outlined: pressure (red) less [attraction](crate::adhesion)
-    /// (blue), white at zero, grey where there is nothing to touch. [`Map::pressure`] is the pressure of the wall alone.
+    /// The net traction between the bodies, with the contact outlined: pressure (red) less
+    /// [attraction](crate::adhesion) (blue), white at zero, grey where there is nothing to touch. [`Map::pressure`]
+    /// is the pressure of the wall alone.
     ///
     /// # Errors
     /// If a traction exceeds 1e100 Pa in magnitude.

@@ -18,8 +18,8 @@ pub enum Style {
     LineAndDots,
 }
 
-/// Preferred position of the legend in a chart. It stands elsewhere if it hides less of the curves there; the vertical axis
-/// becomes longer where no position is free.
+/// Preferred position of the legend in a chart. It stands elsewhere if it hides less of the curves there; the
+/// vertical axis becomes longer where no position is free.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[expect(missing_docs, reason = "the names are self-explanatory")]
 #[expect(clippy::exhaustive_enums, reason = "there are nine positions")]

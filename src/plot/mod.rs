@@ -37,9 +37,9 @@
 //! # Ok::<(), Error>(())
 //! ```
 //!
-//! Files are PNG or SVG, by their extension. Values are given in SI; axes and colour bars choose the prefix that keeps
-//! numbers short ([`Quantity`]; [`measure`] for titles and legends). The colours can be distinguished without colour vision. The font is compiled in: no
-//! system font is needed.
+//! Files are PNG or SVG, by their extension. Values are given in SI; axes and colour bars choose the prefix that
+//! keeps numbers short ([`Quantity`]; [`measure`] for titles and legends). The colours can be distinguished without
+//! colour vision. The font is compiled in: no system font is needed.
 
 mod animation;
 mod axis;

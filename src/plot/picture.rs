@@ -16,8 +16,8 @@ const MAX_SIDE: usize = 16_384;
 /// The font of the pixels, then fonts that most systems have.
 const FONTS: &str = "'Ubuntu Light', Ubuntu, Arial, Helvetica, 'Liberation Sans', sans-serif";
 
-/// A picture in memory: three bytes per pixel, red, green and blue, row by row from the top; and the same shapes as elements of
-/// an SVG document.
+/// A picture in memory: three bytes per pixel, red, green and blue, row by row from the top; and the same shapes as
+/// elements of an SVG document.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Picture {
     size: [u32; 2],
@@ -67,9 +67,9 @@ impl Picture {
         &self.rgb
     }
 
-    /// Writes the picture to a file in the format of its extension, `.png` or `.svg`. SVG files have the same size and
-    /// sharp lines at any magnification; their texts are texts, in a similar font of the reader's system. Maps are images in
-    /// them, of a pixel for each cell. An existing file is replaced when the new one is complete.
+    /// Writes the picture to a file in the format of its extension, `.png` or `.svg`. SVG files have the same size
+    /// and sharp lines at any magnification; their texts are texts, in a similar font of the reader's system. Maps
+    /// are images in them, of a pixel for each cell. An existing file is replaced when the new one is complete.
     ///
     /// # Errors
     /// [`FileError::Extension`](crate::FileError::Extension) if the extension is another, or if the file cannot be written.
@@ -81,8 +81,8 @@ impl Picture {
         }
     }
 
-    /// Writes the SVG document. Cells are an image of a pixel each: a map takes as much as in a PNG file, where rectangles would
-    /// take a hundred bytes for each cell.
+    /// Writes the SVG document. Cells are an image of a pixel each: a map takes as much as in a PNG file, where
+    /// rectangles would take a hundred bytes for each cell.
     fn write_svg(&self, out: &mut impl io::Write) -> io::Result<()> {
         let [width, height] = self.size;
         writeln!(

@@ -12,9 +12,9 @@ use crate::{Axis, Grid};
 const UNEQUAL: f64 = 1e-6;
 
 impl Map {
-    /// A quantity of the stress on a section below the surface of `contact`, such as [`Stress::von_mises`]; the bar on the
-    /// surface is the contact along the section. Each depth fills the layer from half a step above it to half a step below, so
-    /// that depths of ½, 3/2, … steps begin at the surface.
+    /// A quantity of the stress on a section below the surface of `contact`, such as [`Stress::von_mises`]; the bar
+    /// on the surface is the contact along the section. Each depth fills the layer from half a step above it to half
+    /// a step below, so that depths of ½, 3/2, … steps begin at the surface.
     ///
     /// ```
     /// use viscocontact::{Axis, observe::Stress};
@@ -35,8 +35,8 @@ impl Map {
     /// ```
     ///
     /// # Errors
-    /// If there are fewer than two depths, they do not rise in equal steps, the section does not lie below the grid of the
-    /// contact, or a value is beyond ±1e100.
+    /// If there are fewer than two depths, they do not rise in equal steps, the section does not lie below the grid
+    /// of the contact, or a value is beyond ±1e100.
     pub fn section<'a>(
         contact: impl Into<Fields<'a>>,
         section: &StressSection,

@@ -29,8 +29,8 @@ impl SlidingTable {
         chart
     }
 
-    /// Writes the table ([`SlidingTable::write_csv`]) and a picture of the friction over the speed: `path` with the endings `csv` and `png`, which take
-    /// the place of one of these endings alone. Existing files are replaced.
+    /// Writes the table ([`SlidingTable::write_csv`]) and a picture of the friction over the speed: `path` with the
+    /// endings `csv` and `png`, which take the place of one of these endings alone. Existing files are replaced.
     ///
     /// # Errors
     /// If a file cannot be written, or there is nothing to draw.

@@ -4,7 +4,8 @@ use crate::plot::{COLORS, Chart, Legend, Quantity, Scale, Style};
 use crate::study::StudyResult;
 
 impl StudyResult {
-    /// A chart of the change of each quantity from mesh to mesh over the cells along the longer side; quantities that do not change are left out.
+    /// A chart of the change of each quantity from mesh to mesh over the cells along the longer side; quantities that
+    /// do not change are left out.
     ///
     /// ```
     /// use viscocontact::prelude::*;

@@ -4,8 +4,8 @@ use std::fmt;
 
 use crate::rheology::{Material, Volume};
 
-/// The line that `Display` prints. A rheology may be a closure, so that a material is not read back: save the arguments of its models, or
-/// its [`CreepSpectrum`](crate::rheology::CreepSpectrum), which is.
+/// The line that `Display` prints. A rheology may be a closure, so that a material is not read back: save the
+/// arguments of its models, or its [`CreepSpectrum`](crate::rheology::CreepSpectrum), which is.
 #[cfg(feature = "serde")]
 impl serde::Serialize for Material {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {

@@ -37,8 +37,8 @@ impl FractionalMaxwell {
         Ok(FractionalMaxwell { glassy, rate, exponent })
     }
 
-    /// A spring of shear `modulus` G \[Pa\] in series with a springpot that creeps as much as the spring, but for a factor
-    /// 1/Γ(1 + α), in the `time` τ \[s\]: J = (1 + (t/τ)^α/Γ(1 + α))/G, V = G τ^α.
+    /// A spring of shear `modulus` G \[Pa\] in series with a springpot that creeps as much as the spring, but for a
+    /// factor 1/Γ(1 + α), in the `time` τ \[s\]: J = (1 + (t/τ)^α/Γ(1 + α))/G, V = G τ^α.
     ///
     /// # Errors
     /// If the modulus or the time is not finite and positive, or the exponent is outside (0, 1).

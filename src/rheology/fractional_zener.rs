@@ -43,12 +43,13 @@ impl FractionalZener {
         Ok(FractionalZener { glassy: 1.0 / g, retarded: 1.0 / g_k, time, exponent })
     }
 
-    /// A body whose shear modulus relaxes from `glassy` to `rubbery` \[Pa\] with the relaxation `time` τ \[s\] and order
-    /// `exponent` α: G(t) = rubbery + (glassy − rubbery) E_α(−(t/τ)^α). It creeps slower, λ = τ (glassy/rubbery)^(1/α).
+    /// A body whose shear modulus relaxes from `glassy` to `rubbery` \[Pa\] with the relaxation `time` τ \[s\] and
+    /// order `exponent` α: G(t) = rubbery + (glassy − rubbery) E_α(−(t/τ)^α). It creeps slower, λ = τ
+    /// (glassy/rubbery)^(1/α).
     ///
     /// # Errors
-    /// If the moduli or the time are not finite and positive, the glassy modulus is not the greater one, the exponent is
-    /// outside (0, 1), or the retardation time exceeds the range of `f64`.
+    /// If the moduli or the time are not finite and positive, the glassy modulus is not the greater one, the exponent
+    /// is outside (0, 1), or the retardation time exceeds the range of `f64`.
     pub fn relaxing(glassy: f64, rubbery: f64, time: f64, exponent: f64) -> Result<FractionalZener> {
         let [ratio, g_k] = relaxed_element(glassy, rubbery)?;
         positive("relaxation time", time)?;

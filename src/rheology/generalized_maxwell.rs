@@ -38,7 +38,8 @@ impl GeneralizedMaxwell {
     /// | Ansys, `TB,PRONY` | α_i, τ_i with the instantaneous modulus |
     /// | COMSOL, generalized Maxwell | moduli G_m of branches beside the long-term modulus G: [`GeneralizedMaxwell::new`] |
     ///
-    /// Shares k_i of a bulk modulus that relaxes in proportion: [`Material::relaxing_bulk`](crate::rheology::Material::relaxing_bulk).
+    /// Shares k_i of a bulk modulus that relaxes in proportion:
+    /// [`Material::relaxing_bulk`](crate::rheology::Material::relaxing_bulk).
     ///
     /// ```
     /// use viscocontact::rheology::{GeneralizedMaxwell, PronyTerm, Rheology};

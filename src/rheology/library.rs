@@ -189,7 +189,8 @@ const POLYSTYRENE_RINGS: PublishedMaterial = PublishedMaterial {
     temperature: None,
     poisson: None,
     wlf: None,
-    reference: "M. Kapnistos et al., Nat. Mater. 7 (2008) 997; spectrum: S. Shanbhag, Macromol. Theory Simul. (2019) 1900005",
+    reference: "M. Kapnistos et al., Nat. Mater. 7 (2008) 997; spectrum: S. Shanbhag, Macromol. Theory Simul. \
+        (2019) 1900005",
     remark: "digits as in the data of S. Shanbhag, J. Rheol. 67 (2023) 965 (github.com/shane5ul/psi, tests/g3.dat); the temperature is \
              not given there",
 };

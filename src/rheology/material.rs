@@ -128,9 +128,9 @@ impl Material {
         Material::of_shear_and_bulk(rheology, &creep, Bulk { constant: bulk_modulus, per_shear: 0.0 })
     }
 
-    /// A body whose bulk relaxes in proportion to its shear: B(t)/B(0) = 1 − c (1 − G(t)/G(0)), with `bulk_modulus` B(0)
-    /// \[Pa\] and `ratio` c, as Prony series of finite-element programs with k_i = c g_i at the times of the shear. It is
-    /// exact as [`Material::elastic_bulk`], with B(t) in place of B.
+    /// A body whose bulk relaxes in proportion to its shear: B(t)/B(0) = 1 − c (1 − G(t)/G(0)), with `bulk_modulus`
+    /// B(0) \[Pa\] and `ratio` c, as Prony series of finite-element programs with k_i = c g_i at the times of the
+    /// shear. It is exact as [`Material::elastic_bulk`], with B(t) in place of B.
     ///
     /// ```
     /// use viscocontact::rheology::{GeneralizedMaxwell, Material, PronyTerm};
@@ -145,8 +145,8 @@ impl Material {
     /// ```
     ///
     /// # Errors
-    /// As [`Material::elastic_bulk`]; if the ratio is outside \[0, 1), or the rheology has no elastic response. With a ratio of 1
-    /// Poisson's ratio is constant: [`Material::constant_poisson`].
+    /// As [`Material::elastic_bulk`]; if the ratio is outside \[0, 1), or the rheology has no elastic response. With
+    /// a ratio of 1 Poisson's ratio is constant: [`Material::constant_poisson`].
     pub fn relaxing_bulk(rheology: impl Rheology + 'static, bulk_modulus: f64, ratio: f64) -> Result<Material> {
         positive("bulk modulus", bulk_modulus)?;
         within("ratio of the relaxation in bulk to that in shear", ratio, (0.0..1.0).contains(&ratio), "in [0, 1)")?;

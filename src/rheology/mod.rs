@@ -21,9 +21,9 @@
 //!
 //! # Arguments
 //!
-//! One order everywhere: a strength first (modulus \[Pa\] or compliance \[1/Pa\]), then its time \[s\], an exponent last.
-//! A term of a series is the pair (strength, time): (modulus, relaxation time) where it relaxes, (compliance, retardation time) where
-//! it creeps. Constructors of one name take the same of every model:
+//! One order everywhere: a strength first (modulus \[Pa\] or compliance \[1/Pa\]), then its time \[s\], an exponent
+//! last. A term of a series is the pair (strength, time): (modulus, relaxation time) where it relaxes, (compliance,
+//! retardation time) where it creeps. Constructors of one name take the same of every model:
 //!
 //! | constructor | takes |
 //! |---|---|
@@ -33,8 +33,8 @@
 //! | [`GeneralizedMaxwell::prony`] | glassy modulus, share of it and relaxation time of each term ([`PronyTerm`]) |
 //! | [`GeneralizedMaxwell::prony_long_term`] | shares of the rubbery modulus |
 //!
-//! Moduli are shear moduli. Data in tension, E(t), D(t), E′ and E″, are a [`Tension`], of which [`Material::from_tension`] makes
-//! a material; elastic constants by [`Elastic::young`].
+//! Moduli are shear moduli. Data in tension, E(t), D(t), E′ and E″, are a [`Tension`], of which
+//! [`Material::from_tension`] makes a material; elastic constants by [`Elastic::young`].
 //!
 //! # Materials
 //!

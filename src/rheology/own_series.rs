@@ -5,7 +5,8 @@ use std::sync::Arc;
 use crate::error::{MaterialError, Result};
 use crate::rheology::{Rheology, is_known};
 
-/// A contact takes steps by the series, and its elastic response by J(t): they must be the same function but for such a part.
+/// A contact takes steps by the series, and its elastic response by J(t): they must be the same function but for such
+/// a part.
 const SAME_CREEP: f64 = 1e-3;
 
 /// Rejects a rheology with a series of another function than its creep, at t = 0 and about each retardation time.

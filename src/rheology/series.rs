@@ -6,10 +6,10 @@ use crate::rheology::{CreepSpectrum, Rheology, is_known, may_follow};
 
 /// The exponential series that approximates a creep compliance over a range of times, and its error.
 ///
-/// Made by [`Rheology::series`] of a formula, and by [`Measurements::fit`](crate::rheology::Measurements::fit) of a table.
-/// It is a [`Rheology`] itself: exact at t = 0 if the body has an elastic response,
-/// within the tolerance over the range, and known up to its end. A body without elastic response gets one: its creep up
-/// to the shortest time counts as immediate.
+/// Made by [`Rheology::series`] of a formula, and by [`Measurements::fit`](crate::rheology::Measurements::fit) of a
+/// table. It is a [`Rheology`] itself: exact at t = 0 if the body has an elastic response, within the tolerance over
+/// the range, and known up to its end. A body without elastic response gets one: its creep up to the shortest time
+/// counts as immediate.
 ///
 /// ```
 /// use viscocontact::rheology::{FnRheology, Rheology};

@@ -85,7 +85,8 @@ checked_parts!(CreepSpectrumParts of CreepSpectrum: glassy, fluidity);
 #[cfg(feature = "serde")]
 checked_parts!(RelaxationSpectrumParts of RelaxationSpectrum: equilibrium, viscosity);
 
-/// A spring, a dashpot and any number of Kelvin–Voigt elements in series: J = J_g + φ t + Σ J_k (1 − e^(−t/λ_k)), the series itself.
+/// A spring, a dashpot and any number of Kelvin–Voigt elements in series: J = J_g + φ t + Σ J_k (1 − e^(−t/λ_k)), the
+/// series itself.
 pub type GeneralizedKelvin = CreepSpectrum;
 
 impl CreepSpectrum {
@@ -225,7 +226,8 @@ impl RelaxationSpectrum {
 const LEAST: f64 = 1e-100;
 const MOST: f64 = 1e100;
 
-/// Checks the ends of a series and its (strength, time) pairs, sorts the pairs by time, merges equal times, drops zero strengths.
+/// Checks the ends of a series and its (strength, time) pairs, sorts the pairs by time, merges equal times, drops
+/// zero strengths.
 fn sorted_terms(
     [series, first, second, strength_name, time_name]: [&'static str; 5],
     ends: [f64; 2],

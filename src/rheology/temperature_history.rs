@@ -9,15 +9,16 @@ use crate::rheology::TimeTemperature;
 
 /// A temperature that changes in time, the same everywhere in the bodies.
 ///
-/// Where all relaxation times share the shift factor a_T, a body at T(t) creeps as at the reference temperature, in the
-/// reduced time ξ(t) = ∫ dt′/a_T(T(t′)) (Morland & Lee, *The stress analysis of linear viscoelastic materials with temperature
-/// variation*, 1960). A contact built with one ([`Builder::temperature`](crate::contact::Builder::temperature)) integrates its
-/// material over ξ; loads, motions, reports and power stay in t.
+/// Where all relaxation times share the shift factor a_T, a body at T(t) creeps as at the reference temperature, in
+/// the reduced time ξ(t) = ∫ dt′/a_T(T(t′)) (Morland & Lee, *The stress analysis of linear viscoelastic materials
+/// with temperature variation*, 1960). A contact built with one
+/// ([`Builder::temperature`](crate::contact::Builder::temperature)) integrates its material over ξ; loads, motions,
+/// reports and power stay in t.
 ///
-/// Not modelled: thermal expansion, heating by dissipation, temperatures that differ from place to place, and bodies of which only
-/// one follows the law. Moduli that change with temperature by more than their times are refused: a law with
-/// [vertical factors](TimeTemperature::with_vertical_factors) says how they are at each temperature, not how the stress changes while the
-/// temperature does. At one temperature take [`TimeTemperature::at`].
+/// Not modelled: thermal expansion, heating by dissipation, temperatures that differ from place to place, and bodies
+/// of which only one follows the law. Moduli that change with temperature by more than their times are refused: a law
+/// with [vertical factors](TimeTemperature::with_vertical_factors) says how they are at each temperature, not how the
+/// stress changes while the temperature does. At one temperature take [`TimeTemperature::at`].
 ///
 /// ```
 /// use viscocontact::prelude::*;
@@ -83,8 +84,8 @@ const MAX_PIECES: usize = 1 << 14;
 /// Pieces for which there is room from the start.
 const ROOM: usize = 32;
 const LEAST_AGREEMENT: f64 = 1e-5;
-/// Noise in the temperature limits the agreement: from `NOISY_PIECES` pieces on, the refinement ends when halving leaves
-/// more than the part `NOISE` of the difference.
+/// Noise in the temperature limits the agreement: from `NOISY_PIECES` pieces on, the refinement ends when halving
+/// leaves more than the part `NOISE` of the difference.
 const NOISY_PIECES: usize = 512;
 const NOISE: f64 = 0.75;
 /// Relative tolerance of a length in t that belongs to a length in ξ. Only the order of magnitude matters.
@@ -185,8 +186,8 @@ impl TemperatureHistory {
         }
     }
 
-    /// The reduced time \[s\] that passes between two times: ∫ dt/a_T(T(t)), to thirteen digits where the temperature is
-    /// smooth between its corners, and to five at least.
+    /// The reduced time \[s\] that passes between two times: ∫ dt/a_T(T(t)), to thirteen digits where the temperature
+    /// is smooth between its corners, and to five at least.
     ///
     /// # Errors
     /// If a time is not finite, `to` is before `from`, the reduced time overflows, a closure is too rough

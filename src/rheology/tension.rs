@@ -1,9 +1,10 @@
-/// A rheology of a rod: what the rheology inside gives as J(t) is the strain D(t) under unit tension, 1/E for an elastic one, and
-/// every modulus that a model takes is a Young's modulus.
+/// A rheology of a rod: what the rheology inside gives as J(t) is the strain D(t) under unit tension, 1/E for an
+/// elastic one, and every modulus that a model takes is a Young's modulus.
 ///
-/// It is no [`Rheology`](crate::rheology::Rheology), so that only [`Material::from_tension`](crate::rheology::Material::from_tension)
-/// and [`Material::from_tension_elastic_bulk`](crate::rheology::Material::from_tension_elastic_bulk) take it: taken for shear, a
-/// rod makes a body up to three times too stiff. Tables become one by
+/// It is no [`Rheology`](crate::rheology::Rheology), so that only
+/// [`Material::from_tension`](crate::rheology::Material::from_tension) and
+/// [`Material::from_tension_elastic_bulk`](crate::rheology::Material::from_tension_elastic_bulk) take it: taken for
+/// shear, a rod makes a body up to three times too stiff. Tables become one by
 /// [`Measurements::fit_tension`](crate::rheology::Measurements::fit_tension), other models by name:
 ///
 /// ```

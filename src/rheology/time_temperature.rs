@@ -11,7 +11,8 @@ pub(crate) const GAS_CONSTANT: f64 = 8.314_462_618_153_24;
 const LEAST_REFERENCE: f64 = 100.0;
 
 /// The dependence of creep on temperature: at T all times are a_T times the times at the reference temperature
-/// (thermorheologically simple bodies), and all moduli b_T times the moduli there, if the law has such vertical factors.
+/// (thermorheologically simple bodies), and all moduli b_T times the moduli there, if the law has such vertical
+/// factors.
 ///
 /// ```
 /// use viscocontact::rheology::{Maxwell, Rheology, TimeTemperature};
@@ -107,8 +108,9 @@ impl TimeTemperature {
         TimeTemperature { law, reference, below: Vec::new(), vertical: None }
     }
 
-    /// A `table` of temperatures \[K\], ascending, and shift factors a_T, which are 1 at the `reference`. Between its rows ln a_T
-    /// is linear in 1/T; outside there is no factor, unless the table is [`extrapolated`](TimeTemperature::extrapolated).
+    /// A `table` of temperatures \[K\], ascending, and shift factors a_T, which are 1 at the `reference`. Between its
+    /// rows ln a_T is linear in 1/T; outside there is no factor, unless the table is
+    /// [`extrapolated`](TimeTemperature::extrapolated).
     ///
     /// ```
     /// use viscocontact::rheology::TimeTemperature;
@@ -121,16 +123,16 @@ impl TimeTemperature {
     /// ```
     ///
     /// # Errors
-    /// If there are fewer than two rows, their temperatures do not ascend, a value is not finite and positive, or no row says
-    /// a_T = 1 at the reference.
+    /// If there are fewer than two rows, their temperatures do not ascend, a value is not finite and positive, or no
+    /// row says a_T = 1 at the reference.
     pub fn table(table: &[(f64, f64)], reference: f64) -> Result<TimeTemperature> {
         least_length("rows of shift factors", table.len(), 2)?;
         let rows = checked_rows(["temperatures of shift factors", "shift factor"], table, reference)?;
         Ok(TimeTemperature::by(Law::Table { rows, extrapolated: false }, reference))
     }
 
-    /// The same beyond a table of shift factors, by the Arrhenius law through its two last rows, and beyond a table of vertical
-    /// factors, by the power of T through its two last rows; other laws stay as they are.
+    /// The same beyond a table of shift factors, by the Arrhenius law through its two last rows, and beyond a table
+    /// of vertical factors, by the power of T through its two last rows; other laws stay as they are.
     #[must_use]
     pub fn extrapolated(mut self) -> TimeTemperature {
         if let Law::Table { extrapolated, .. } = &mut self.law {
@@ -142,10 +144,11 @@ impl TimeTemperature {
         self
     }
 
-    /// The same with moduli that change with temperature, too: a `table` of temperatures \[K\], ascending, and vertical factors b_T,
-    /// which are 1 at the reference. At T all moduli are b_T times those at the reference, and all compliances 1/b_T times. Between its
-    /// rows ln b_T is linear in ln T; outside there is no factor, unless the law is [`extrapolated`](TimeTemperature::extrapolated).
-    /// The laws of a [`MasterCurve`](crate::rheology::MasterCurve) have the factors of the curve.
+    /// The same with moduli that change with temperature, too: a `table` of temperatures \[K\], ascending, and
+    /// vertical factors b_T, which are 1 at the reference. At T all moduli are b_T times those at the reference, and
+    /// all compliances 1/b_T times. Between its rows ln b_T is linear in ln T; outside there is no factor, unless the
+    /// law is [`extrapolated`](TimeTemperature::extrapolated). The laws of a
+    /// [`MasterCurve`](crate::rheology::MasterCurve) have the factors of the curve.
     ///
     /// ```
     /// use viscocontact::rheology::{Elastic, Rheology, TimeTemperature};
@@ -157,14 +160,15 @@ impl TimeTemperature {
     /// ```
     ///
     /// # Errors
-    /// If there is no row, the temperatures do not ascend, a value is not finite and positive, or no row says b_T = 1 at the
-    /// reference.
+    /// If there is no row, the temperatures do not ascend, a value is not finite and positive, or no row says b_T = 1
+    /// at the reference.
     pub fn with_vertical_factors(self, table: &[(f64, f64)]) -> Result<TimeTemperature> {
         let rows = checked_rows(["temperatures of vertical factors", "vertical factor"], table, self.reference)?;
         Ok(TimeTemperature { vertical: Some(Vertical::Table { rows, extrapolated: false }), ..self })
     }
 
-    /// The same with moduli in proportion to the temperature, b_T = T/T_ref, as of rubbers, whose elasticity is that of entropy.
+    /// The same with moduli in proportion to the temperature, b_T = T/T_ref, as of rubbers, whose elasticity is that
+    /// of entropy.
     #[must_use]
     pub fn with_entropic_moduli(self) -> TimeTemperature {
         TimeTemperature { vertical: Some(Vertical::Entropic), ..self }
@@ -182,12 +186,12 @@ impl TimeTemperature {
         self.vertical.is_some()
     }
 
-    /// The same above a `temperature` \[K\], and below it an Arrhenius law with an `energy` in J/mol, without a jump: as of
-    /// polymers below their glass transition.
+    /// The same above a `temperature` \[K\], and below it an Arrhenius law with an `energy` in J/mol, without a jump:
+    /// as of polymers below their glass transition.
     ///
     /// # Errors
-    /// If one is not finite and positive, the law does not hold at the temperature, or the temperature is above the reference, or not below
-    /// the temperature of an Arrhenius law that continues the law already.
+    /// If one is not finite and positive, the law does not hold at the temperature, or the temperature is above the
+    /// reference, or not below the temperature of an Arrhenius law that continues the law already.
     pub fn with_arrhenius_below(mut self, temperature: f64, energy: f64) -> Result<TimeTemperature> {
         positive("activation energy", energy)?;
         let is_below = match self.below.last() {
@@ -246,8 +250,9 @@ impl TimeTemperature {
     /// a_T at `temperature` \[K\].
     ///
     /// # Errors
-    /// If the temperature is not finite and positive, not above T_ref − C₂, where the WLF law ends, outside a table, less than a third
-    /// or more than three times the temperature at which an Arrhenius law begins, or a_T is outside \[1e-60, 1e60\].
+    /// If the temperature is not finite and positive, not above T_ref − C₂, where the WLF law ends, outside a table,
+    /// less than a third or more than three times the temperature at which an Arrhenius law begins, or a_T is outside
+    /// \[1e-60, 1e60\].
     pub fn shift_factor(&self, temperature: f64) -> Result<f64> {
         positive("temperature", temperature)?;
         let allowed = "in [1e-60, 1e60]: temperatures are in kelvin (20 °C is 293.15), energies in J/mol";
@@ -309,8 +314,8 @@ fn is_inside(rows: &[(f64, f64)], temperature: f64) -> bool {
     ends.is_some_and(|(first, last)| (first.0..=last.0).contains(&temperature))
 }
 
-/// The factor at a temperature, its logarithm being linear in an `abscissa` that ascends with the temperature: between two rows, or beyond all
-/// of them through the last two.
+/// The factor at a temperature, its logarithm being linear in an `abscissa` that ascends with the temperature:
+/// between two rows, or beyond all of them through the last two.
 fn interpolated(rows: &[(f64, f64)], temperature: f64, abscissa: impl Fn(f64) -> f64) -> f64 {
     if rows.len() < 2 {
         return rows.first().map_or(1.0, |row| row.1);

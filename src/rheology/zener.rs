@@ -56,7 +56,8 @@ impl Zener {
     }
 }
 
-/// The ratio of the moduli, and the modulus of the Kelvin–Voigt element that makes a body of `glassy` modulus relax to `rubbery`.
+/// The ratio of the moduli, and the modulus of the Kelvin–Voigt element that makes a body of `glassy` modulus relax
+/// to `rubbery`.
 pub(super) fn relaxed_element(glassy: f64, rubbery: f64) -> Result<[f64; 2]> {
     positive("rubbery modulus", rubbery)?;
     within("glassy modulus", glassy, glassy > rubbery, "finite, and greater than the rubbery modulus")?;

@@ -19,11 +19,12 @@ const MAX_SOLVER_RETRIES: u32 = 5;
 /// after they join.
 const ORDER_OF_KINKS: u32 = 2;
 
-/// The error of a step with a jump is multiplied by this: the state after a jump depends little on when it jumped, and on the energy lost.
+/// The error of a step with a jump is multiplied by this: the state after a jump depends little on when it jumped,
+/// and on the energy lost.
 const JUMPED: f64 = 100.0;
 
-/// Takes one step as long as its error allows: proposes a length, checks the load within the step, tries the step, judges its
-/// error, and accepts it or tries a shorter one.
+/// Takes one step as long as its error allows: proposes a length, checks the load within the step, tries the step,
+/// judges its error, and accepts it or tries a shorter one.
 pub(super) fn adaptive_step(
     contact: &mut ViscoelasticContact,
     control: &mut StepControl,
@@ -149,8 +150,9 @@ struct Tried {
     halves: Option<[TimeError; 2]>,
 }
 
-/// Tries a step, the whole of it, and in two halves where surfaces attract each other, unless the whole errs by too much. The loads deviate
-/// by `straying` from what the step takes them for, and by `apart` those of bodies that are apart at its start.
+/// Tries a step, the whole of it, and in two halves where surfaces attract each other, unless the whole errs by too
+/// much. The loads deviate by `straying` from what the step takes them for, and by `apart` those of bodies that are
+/// apart at its start.
 fn try_step(
     contact: &mut ViscoelasticContact,
     control: &mut StepControl,

@@ -24,7 +24,8 @@ pub struct Course<'a> {
     pub stop: f64,
     /// The next corner of load or temperature.
     pub corner: f64,
-    /// The next time at which the displacement may have a kink: a corner, except one of the temperature that does not jump.
+    /// The next time at which the displacement may have a kink: a corner, except one of the temperature that does not
+    /// jump.
     pub kink: f64,
     /// Set by another thread to end the step.
     pub cancelled: Option<&'a AtomicBool>,
@@ -59,8 +60,8 @@ pub trait FieldFinder<C: Driven>: Debug + Send + Sync {
     /// Sees a step of the run, from `start` to the time of its contact.
     fn follow(&mut self, _: &C, _: &dyn LoadHistory, _start: f64) {}
 
-    /// What has the field of a contact of the last step to the accuracy, where the contact has not; before a jump of the load at
-    /// its time, or after it.
+    /// What has the field of a contact of the last step to the accuracy, where the contact has not; before a jump of
+    /// the load at its time, or after it.
     fn exact_field(
         &self,
         contact: &C,
@@ -73,8 +74,9 @@ pub trait FieldFinder<C: Driven>: Debug + Send + Sync {
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub struct FieldReport {
-    /// Estimated error in time of the pressure, Σ |δp| over Σ p; over a hundredth of the greatest force so far, if that is more. `None`
-    /// while bodies may be about to touch for the first time, or nothing has pressed, and where a step for the estimate failed.
+    /// Estimated error in time of the pressure, Σ |δp| over Σ p; over a hundredth of the greatest force so far, if
+    /// that is more. `None` while bodies may be about to touch for the first time, or nothing has pressed, and where
+    /// a step for the estimate failed.
     pub error: Option<f64>,
     /// Number of elastic contacts that were solved for it, with those for the whole run before its first field.
     pub elastic_contacts: usize,
@@ -111,7 +113,8 @@ pub trait Driven: Contact + Debug {
     /// Takes the next step. Differences of steps start anew where it ends at a corner.
     fn advance(&mut self, control: &mut Self::Control, course: &Course<'_>) -> Result<StepReport>;
 
-    /// The contact at a time within the last step, under the loads of the histories, and the report of the step to that time.
+    /// The contact at a time within the last step, under the loads of the histories, and the report of the step to
+    /// that time.
     fn within(&self, control: &Self::Control, histories: &Histories<'_>, time: f64) -> Result<(Self, StepReport)>;
 
     /// Lowers the tolerance of the adaptive steps.

@@ -42,17 +42,17 @@ pub struct ErrorBudget {
     pub time: Option<f64>,
     /// Greatest estimated error in time of a step in a single cell, relative to the mean in contact. It bounds the
     /// error of the pressure at a point, and of the greatest pressure. It is largest where a body meets cells faster
-    /// than the steps resolve, which hardly changes its approach. Where a given approach is to return to a surface that
-    /// recovers, or a force jumps up, it includes the error of the cells that the body may meet. `None` before the first
-    /// step.
+    /// than the steps resolve, which hardly changes its approach. Where a given approach is to return to a surface
+    /// that recovers, or a force jumps up, it includes the error of the cells that the body may meet. `None` before
+    /// the first step.
     pub pressure: Option<f64>,
     /// Greatest estimated error in time of the fields that were sampled so far, Σ |δp| over Σ p
-    /// ([`Run::fields_to`](crate::run::Run::fields_to)). The L2 error is about twice as large, relative to the field, and the error of the
-    /// greatest pressure five times. `None` if none has an estimate.
+    /// ([`Run::fields_to`](crate::run::Run::fields_to)). The L2 error is about twice as large, relative to the field,
+    /// and the error of the greatest pressure five times. `None` if none has an estimate.
     pub field: Option<f64>,
-    /// Errors due to the mesh in the present state, measured on coarser meshes; `None` where they are not measured: without contact, for a contact of few
-    /// cells, of surfaces that attract each other, and where [ranks](crate::parallel) share out the rows. Those of a whole run are measured by a
-    /// study (feature `study`).
+    /// Errors due to the mesh in the present state, measured on coarser meshes; `None` where they are not measured:
+    /// without contact, for a contact of few cells, of surfaces that attract each other, and where
+    /// [ranks](crate::parallel) share out the rows. Those of a whole run are measured by a study (feature `study`).
     pub mesh: Option<MeshError>,
     /// Greatest residual of the contact problems, relative to the displacement.
     pub solver: f64,

@@ -69,8 +69,8 @@ impl<C> Event<C> {
         &self.times
     }
 
-    /// Whether the quantity lies beyond the value, perhaps since the start of the run, in which case the event is not met before the
-    /// quantity has come back.
+    /// Whether the quantity lies beyond the value, perhaps since the start of the run, in which case the event is not
+    /// met before the quantity has come back.
     pub fn is_beyond(&self) -> bool {
         matches!(self.side, Some(Side::Met | Side::Beyond))
     }
@@ -96,8 +96,8 @@ impl<C> Event<C> {
         self.is_met = false;
     }
 
-    /// Follows the quantity through a step, looked at so many times, from its start to its end. Returns the number of the first look at
-    /// which it has crossed.
+    /// Follows the quantity through a step, looked at so many times, from its start to its end. Returns the number of
+    /// the first look at which it has crossed.
     pub(super) fn follow(&mut self, beyond: &[f64]) -> Option<usize> {
         let finite = beyond.iter().map(|beyond| beyond.abs()).filter(|beyond| beyond.is_finite());
         self.greatest = finite.fold(self.greatest, f64::max);

@@ -35,8 +35,9 @@ impl Look {
 }
 
 impl<'a, C: RunContact> Run<'a, C> {
-    /// Makes a step end where a quantity of the contact crosses a value: where the force falls to 0, the area grows to a value, the
-    /// approach passes one, or any function of the contact does. Leave the loop there, or go on to the next crossing:
+    /// Makes a step end where a quantity of the contact crosses a value: where the force falls to 0, the area grows
+    /// to a value, the approach passes one, or any function of the contact does. Leave the loop there, or go on to
+    /// the next crossing:
     /// [`Run::events`] has the events in the order of these calls.
     ///
     /// ```
@@ -58,12 +59,13 @@ impl<'a, C: RunContact> Run<'a, C> {
     /// # Ok::<(), viscocontact::Error>(())
     /// ```
     ///
-    /// A quantity that lies beyond the value when the run begins has to come back first. The time of a crossing is found to a
-    /// millionth of a step. Each step is looked at where its load turns, as 64 equal parts of it show, and in the middle between. Where a
-    /// quantity comes as near to its value as it bends, or a quarter of its change, the part is halved again, six times at most. So two
-    /// crossings are missed where both lie within a 64th of a part between two turns, or where the load turns twice within a 64th of the
-    /// step. In space each look costs a contact problem and a copy of the contact, a crossing about ten. Where [ranks](crate::parallel) share out the contact the
-    /// quantity must be the same on all of them.
+    /// A quantity that lies beyond the value when the run begins has to come back first. The time of a crossing is
+    /// found to a millionth of a step. Each step is looked at where its load turns, as 64 equal parts of it show, and
+    /// in the middle between. Where a quantity comes as near to its value as it bends, or a quarter of its change,
+    /// the part is halved again, six times at most. So two crossings are missed where both lie within a 64th of a
+    /// part between two turns, or where the load turns twice within a 64th of the step. In space each look costs a
+    /// contact problem and a copy of the contact, a crossing about ten. Where [ranks](crate::parallel) share out the
+    /// contact the quantity must be the same on all of them.
     ///
     /// # Errors
     /// If the value is not finite. [`Run::next_step`] fails, and takes no step, where the quantity is not a number.
@@ -105,8 +107,8 @@ impl<'a, C: RunContact> Run<'a, C> {
         Ok(None)
     }
 
-    /// Follows all events through the last step. Returns the first of them and its time, if it is before the end of the step and to be
-    /// searched for.
+    /// Follows all events through the last step. Returns the first of them and its time, if it is before the end of
+    /// the step and to be searched for.
     fn first_event(&self, events: &mut [Event<C>], start: &C, searches: bool) -> Result<Option<(usize, f64)>> {
         let (from, to) = (start.time(), self.contact.time());
         let same = SAME_TIME * (to - from);
@@ -135,7 +137,8 @@ impl<'a, C: RunContact> Run<'a, C> {
         Ok(looks)
     }
 
-    /// Adds looks after the last one: in the middle before `end`, more where a quantity may cross its value twice, and `end`.
+    /// Adds looks after the last one: in the middle before `end`, more where a quantity may cross its value twice,
+    /// and `end`.
     fn look_until(&self, events: &[Event<C>], looks: &mut Vec<Look>, end: Look, halved: u32) -> Result<()> {
         let time = 0.5 * (looks[looks.len() - 1].time + end.time);
         if halved == HALVINGS || time <= looks[looks.len() - 1].time || time >= end.time {
@@ -151,9 +154,9 @@ impl<'a, C: RunContact> Run<'a, C> {
     }
 }
 
-/// Whether a quantity with these distances to the value, at both ends of a part of a step and in its middle, may cross the value more often
-/// than they show: where it stays on one side, if it is nearer than it bends, or than a quarter of its change; else if the parabola through
-/// the three turns.
+/// Whether a quantity with these distances to the value, at both ends of a part of a step and in its middle, may
+/// cross the value more often than they show: where it stays on one side, if it is nearer than it bends, or than a
+/// quarter of its change; else if the parabola through the three turns.
 fn hides_crossings([start, middle, end]: [f64; 3]) -> bool {
     let (bend, change) = ((start - 2.0 * middle + end).abs(), (end - start).abs());
     let nearest = start.abs().min(middle.abs()).min(end.abs());
@@ -187,8 +190,8 @@ fn turns_of(history: &dyn LoadHistory, from: f64, to: f64) -> Vec<f64> {
     turns
 }
 
-/// The first time found at which the quantity is beyond the value, at most `same` after one at which it is not: by secants, and by
-/// halves where these are slow. From times and distances to the value of two looks.
+/// The first time found at which the quantity is beyond the value, at most `same` after one at which it is not: by
+/// secants, and by halves where these are slow. From times and distances to the value of two looks.
 fn crossing_within([mut low, mut high]: [(f64, f64); 2], same: f64, at: impl Fn(f64) -> Result<f64>) -> Result<f64> {
     let strict = low.1 == 0.0;
     let mut weights = [1.0; 2];

@@ -12,12 +12,14 @@ const HALVINGS: usize = 12;
 const ACCURACY: f64 = 1e-3;
 
 impl<C: RunContact> Run<'_, C> {
-    /// The time \[s\] of the maximum of a quantity within the last step, and the maximum; pass the negative for the minimum. Adaptive steps
-    /// are as long as approach or force at their *ends* allow: the greatest pull of a pull-off, the peak of a pressure mostly lie within one.
+    /// The time \[s\] of the maximum of a quantity within the last step, and the maximum; pass the negative for the
+    /// minimum. Adaptive steps are as long as approach or force at their *ends* allow: the greatest pull of a
+    /// pull-off, the peak of a pressure mostly lie within one.
     ///
-    /// The quantity is looked at at eight equal parts of the step, and beside the maximum twice as often until it changes by less than a
-    /// thousandth of its range in the step. Each look costs a contact problem and a copy of the contact, as a
-    /// [sample](Run::within_step) does. A peak is missed where it lies between two looks that do not show it.
+    /// The quantity is looked at at eight equal parts of the step, and beside the maximum twice as often until it
+    /// changes by less than a thousandth of its range in the step. Each look costs a contact problem and a copy of
+    /// the contact, as a [sample](Run::within_step) does. A peak is missed where it lies between two looks that do
+    /// not show it.
     ///
     /// ```
     /// use viscocontact::adhesion::ExponentialAttraction;
@@ -56,7 +58,8 @@ impl<C: RunContact> Run<'_, C> {
             let range = values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min);
             let Some(best) = (0..looks.len()).max_by(|&a, &b| looks[a].1.total_cmp(&looks[b].1)) else { break };
             let (before, after) = (best.saturating_sub(1), (best + 1).min(looks.len() - 1));
-            // a parabola through three neighbours rises above the middle one by at most an eighth of the fall to both sides
+            // a parabola through three neighbours rises above the middle one by at most an eighth of the fall to both
+            // sides
             let falls = 2.0 * looks[best].1 - looks[before].1 - looks[after].1;
             if falls <= ACCURACY * range || looks[before].0 == looks[after].0 {
                 break;

@@ -126,9 +126,10 @@ impl ViscoelasticContact {
         Run::new(OwnedOrBorrowed::Owned(Box::new(self)), OwnedOrBorrowed::Owned(Box::new(history)), stepping, until)
     }
 
-    /// Like [`ViscoelasticContact::follow`], for several rigid bodies ([`Builder::another_body`](crate::contact::Builder::another_body)):
-    /// each follows a history of its own, in their order. Steps end at the corners and jumps of all histories; adaptive ones are as
-    /// short as the body needs that needs the shortest, and their error is that of all bodies together.
+    /// Like [`ViscoelasticContact::follow`], for several rigid bodies
+    /// ([`Builder::another_body`](crate::contact::Builder::another_body)): each follows a history of its own, in
+    /// their order. Steps end at the corners and jumps of all histories; adaptive ones are as short as the body needs
+    /// that needs the shortest, and their error is that of all bodies together.
     ///
     /// ```
     /// use viscocontact::prelude::*;
@@ -231,15 +232,16 @@ impl<'a, C: RunContact> Run<'a, C> {
     /// Makes steps end exactly at these [`Times`] too. Stops shorten steps, so that an adaptive run takes more of them.
     ///
     /// # Errors
-    /// If a given time is not finite, or not between the start and the end of the run (where it is resumed, of the whole run),
-    /// an interval or the first time in decades not finite and positive, or there are not 1 to 1000 times per decade.
+    /// If a given time is not finite, or not between the start and the end of the run (where it is resumed, of the
+    /// whole run), an interval or the first time in decades not finite and positive, or there are not 1 to 1000 times
+    /// per decade.
     pub fn stop_at(mut self, times: impl Into<Times>) -> Result<Run<'a, C>> {
         self.stops.add(self.within_run(times.into())?, self.progress.start)?;
         Ok(self)
     }
 
-    /// Samples the states at these [`Times`] ([`Run::samples`]), the start of the run among them if it is given. Samples leave
-    /// the steps as they are, bitwise.
+    /// Samples the states at these [`Times`] ([`Run::samples`]), the start of the run among them if it is given.
+    /// Samples leave the steps as they are, bitwise.
     ///
     /// # Errors
     /// As [`Run::stop_at`].
@@ -248,7 +250,8 @@ impl<'a, C: RunContact> Run<'a, C> {
         Ok(self)
     }
 
-    /// Rejects given times at which the run has no state; those that are beyond its ends by their computation alone are moved there.
+    /// Rejects given times at which the run has no state; those that are beyond its ends by their computation alone
+    /// are moved there.
     fn within_run(&self, times: Times) -> Result<Times> {
         let (from, to) = (self.progress.start, self.until);
         times.map_given(|time| {
@@ -264,8 +267,8 @@ impl<'a, C: RunContact> Run<'a, C> {
 
     /// Lets another thread end the step under way, however long: as soon as it sets `flag`, the step fails with
     /// [`Error::Cancelled`](crate::Error::Cancelled) within an iteration of the solver, and leaves the contact as it was. While the flag is set no step is
-    /// taken; once it is cleared the run goes on, with the same steps. Where ranks share out the contact they look at their flags
-    /// when a step begins.
+    /// taken; once it is cleared the run goes on, with the same steps. Where ranks share out the contact they look at
+    /// their flags when a step begins.
     ///
     /// ```
     /// use std::sync::Arc;
@@ -297,13 +300,13 @@ impl<'a, C: RunContact> Run<'a, C> {
     /// at corners and jumps of the history.
     ///
     /// # Errors
-    /// If the end is not finite or lies before the contact's time, or is a time at which the material is not known (from the
-    /// step on in which the bodies touch); if the fixed step is not finite and positive or too
-    /// short to change the time, the tolerance is out of range or requires steps too short to change the time, the
-    /// history returns an invalid load at any time that is evaluated
-    /// ([`LoadError::OutOfRange`](crate::load::LoadError::OutOfRange); [`LoadHistory::at`] states when a run evaluates
-    /// it), or a step fails.
-    /// The contact then keeps its state after the last successful step, and the call may be repeated.
+    /// If the end is not finite or lies before the contact's time, or is a time at which the material is not known
+    /// (from the step on in which the bodies touch); if the fixed step is not finite and positive or too short to
+    /// change the time, the tolerance is out of range or requires steps too short to change the time, the history
+    /// returns an invalid load at any time that is evaluated
+    /// ([`LoadError::OutOfRange`](crate::load::LoadError::OutOfRange); [`LoadHistory::at`] states when a run
+    /// evaluates it), or a step fails. The contact then keeps its state after the last successful step, and the call
+    /// may be repeated.
     ///
     /// If the file of `Run::autosave_to` cannot be written. The step is then taken nevertheless; the next call
     /// writes the file and returns the report of the step.

@@ -1,9 +1,9 @@
 //! Steps of surfaces that attract each other, in two halves.
 //!
-//! Next to surfaces that attract each other the displacement leaves every polynomial within a step: the zone at the edge of the contact runs
-//! over cells, and bodies open and close. So the step is taken as a whole and again in two halves, which are kept. Their error is the whole
-//! difference where the rule has the order one, the least that is left there, and a third of it at the order two of most steps. Half of it
-//! counts.
+//! Next to surfaces that attract each other the displacement leaves every polynomial within a step: the zone at the
+//! edge of the contact runs over cells, and bodies open and close. So the step is taken as a whole and again in two
+//! halves, which are kept. Their error is the whole difference where the rule has the order one, the least that is
+//! left there, and a third of it at the order two of most steps. Half of it counts.
 
 use crate::contact::step::Attempt;
 use crate::contact::step::error_in_time::{error_in_time, least_sizes};

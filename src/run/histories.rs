@@ -4,8 +4,8 @@ use crate::error::{LoadError, Result};
 use crate::load::{Load, LoadHistory};
 use crate::run::OwnedOrBorrowed;
 
-/// The load history of a body. The owned one borrows nothing: after its last use a run no longer borrows its contact, even before
-/// the run is dropped.
+/// The load history of a body. The owned one borrows nothing: after its last use a run no longer borrows its contact,
+/// even before the run is dropped.
 pub(super) type RunHistory<'a> = OwnedOrBorrowed<&'a dyn LoadHistory, Box<dyn LoadHistory>>;
 
 /// One load history for each rigid body, in their order.

@@ -121,7 +121,8 @@ impl ViscoelasticContact {
 }
 
 impl Run<'_> {
-    /// The errors of the run so far, by their source. That of the mesh is [measured](crate::fields::Fields::mesh_error) by this call, in the present state.
+    /// The errors of the run so far, by their source. That of the mesh is
+    /// [measured](crate::fields::Fields::mesh_error) by this call, in the present state.
     pub fn error_budget(&self) -> ErrorBudget {
         let mesh = self.contact.fields().mesh_error().unwrap_or_default();
         ErrorBudget { field: self.worst_field(), mesh, ..self.control.worst }

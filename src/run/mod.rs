@@ -3,10 +3,11 @@
 //! [`Run`] leads a contact in space ([`ViscoelasticContact`](crate::ViscoelasticContact)) or on elastic states
 //! ([`StatesContact`](crate::states::StatesContact)); [`SteadyRun`] moves one in space to its steady state.
 
-// `follow` takes the next step of any contact (`driven`): of given length, or as long as its error allows. In space (`in_space`)
-// `step_control` alone owns the length of a step: `adaptive_step` has it proposed, tries it, has it judged by its error, and accepts it or
-// tries again. The error depends on the loads within the step (`track`, one for each body) and on what lies ahead and behind (`outlook`):
-// the greatest loads and displacements of the run (`run_scale`), and what the steps so far leave (`past_steps`).
+// `follow` takes the next step of any contact (`driven`): of given length, or as long as its error allows. In space
+// (`in_space`) `step_control` alone owns the length of a step: `adaptive_step` has it proposed, tries it, has it
+// judged by its error, and accepts it or tries again. The error depends on the loads within the step (`track`, one
+// for each body) and on what lies ahead and behind (`outlook`): the greatest loads and displacements of the run
+// (`run_scale`), and what the steps so far leave (`past_steps`).
 
 mod adaptive_step;
 #[cfg(feature = "checkpoint")]

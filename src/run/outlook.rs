@@ -17,31 +17,32 @@ use crate::solver::Freedom;
 const SOLVER_SHARE: f64 = 0.03;
 /// Surfaces that attract each other end their passes at a hundred tolerances of the solver.
 const SHARE_OF_PASSES: f64 = 0.03;
-/// An error of the solver counts so many times as much as its response to the surface that the body meets later: the errors of many
-/// steps add up.
+/// An error of the solver counts so many times as much as its response to the surface that the body meets later: the
+/// errors of many steps add up.
 const SOLVER_ON_MEETING: f64 = 3.0;
 /// The solver attains this tolerance in all scenes.
 const LEAST_TOLERANCE: f64 = 1e-10;
-/// A corner of the temperature is one of the second derivative of u. The steps before do not show it: the estimate of the first step
-/// after it, which the next step does not put right, is too low by this factor times the ratio of the step before to this one.
+/// A corner of the temperature is one of the second derivative of u. The steps before do not show it: the estimate of
+/// the first step after it, which the next step does not put right, is too low by this factor times the ratio of the
+/// step before to this one.
 const AT_TURN: f64 = 5.0;
-/// An error of u before a switch to a given approach counts at most so many times: the force by which stiffer glass answers is over
-/// before the first step ends.
+/// An error of u before a switch to a given approach counts at most so many times: the force by which stiffer glass
+/// answers is over before the first step ends.
 const MOST_ON_SWITCH: f64 = 3e3;
 /// Events shorter than this fraction of the time between corners, times the tolerance, are not resolved.
 const SHORTEST: f64 = 0.03;
 
 impl StepControl {
-    /// Tolerance of the solver that suits the tolerance in time, where no prescribed approach is to come. A tolerance of the settings that
-    /// is stricter than the default was asked for, and counts if it is stricter than that, too.
+    /// Tolerance of the solver that suits the tolerance in time, where no prescribed approach is to come. A tolerance
+    /// of the settings that is stricter than the default was asked for, and counts if it is stricter than that, too.
     pub(super) fn solver_tolerance(&self, scene: &Scene) -> f64 {
         let share = if scene.ground.attraction.is_some() { SHARE_OF_PASSES } else { 1.0 } * SOLVER_SHARE;
         let own = scene.ground.settings.tolerance;
         if own < DEFAULT_TOLERANCE { own } else { own.max(share * self.tolerance) }
     }
 
-    /// Tolerance of the solver in a step, at most its own: where a given approach is to come, the bodies respond to an error of u by more
-    /// than in the steps that leave it.
+    /// Tolerance of the solver in a step, at most its own: where a given approach is to come, the bodies respond to
+    /// an error of u by more than in the steps that leave it.
     pub(super) fn solver_tolerance_before_meeting(&self, scene: &Scene, step: &Step<'_>, outlook: &StepContext) -> f64 {
         let Step { interval: Interval { time, dt, .. }, tolerance, .. } = *step;
         let stiffness = self.tracks.iter().map(|track| track.scale.stiffness_after(time)).fold(0.0, f64::max);
@@ -89,9 +90,9 @@ impl StepControl {
         })
     }
 
-    /// What a unit of a defect of v has become of the error of u, over the glassy compliance, when a given force is next followed by a given
-    /// approach, under which the error of u counts: by a defect in this step alone, and in all steps since the load acts, its `age`. Bodies
-    /// without elastic response have the compliance of a `touch`.
+    /// What a unit of a defect of v has become of the error of u, over the glassy compliance, when a given force is
+    /// next followed by a given approach, under which the error of u counts: by a defect in this step alone, and in
+    /// all steps since the load acts, its `age`. Bodies without elastic response have the compliance of a `touch`.
     fn on_switch(&self, scene: &Scene, Interval { time, dt, .. }: Interval, age: f64, touch: f64) -> Result<[f64; 2]> {
         let switches = self.tracks.iter().map(|track| track.scale.next_switch(time));
         let switch = switches.fold(f64::INFINITY, f64::min);
@@ -106,7 +107,8 @@ impl StepControl {
     }
 }
 
-/// The response of v to an error of u of the cells that are met where the load jumps, if a force does so upwards: glassy.
+/// The response of v to an error of u of the cells that are met where the load jumps, if a force does so upwards:
+/// glassy.
 fn stiffness_on_jump(scene: &Scene, before: &Load, after: &Load) -> f64 {
     let compliance = scene.material.contact_compliance(0.0);
     match (before, after) {
@@ -119,9 +121,10 @@ fn stiffness_on_jump(scene: &Scene, before: &Load, after: &Load) -> f64 {
     }
 }
 
-/// By how much the error of a step of length `dt` exceeds its estimate: after a corner of the temperature, and where a body is
-/// free to tilt on a small contact, whose errors are greater by its lever at the end of the grid. Where cells leave on one side,
-/// errors ±e at the outer cells of the contact, w apart, are a tilt by 2e/w, and e L/w at the ends of a grid of length L.
+/// By how much the error of a step of length `dt` exceeds its estimate: after a corner of the temperature, and where
+/// a body is free to tilt on a small contact, whose errors are greater by its lever at the end of the grid. Where
+/// cells leave on one side, errors ±e at the outer cells of the contact, w apart, are a tilt by 2e/w, and e L/w at
+/// the ends of a grid of length L.
 pub(super) fn excess(scene: &Scene, tried: &Computation, dt: f64) -> f64 {
     let clock = &tried.state.clock;
     let corner = scene.temperature.as_ref().and_then(|history| history.next_corner(clock.time.next_down()));

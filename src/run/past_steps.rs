@@ -4,9 +4,9 @@ use crate::error::Result;
 use crate::hereditary::{ExponentialRule, LastingError, TimeError};
 use crate::rheology::{CreepSpectrum, Material};
 
-/// How far the defects of v of the steps so far add up, and the mean errors of u that they leave. Under a given force a defect of v
-/// makes the bodies creep as a force does. Defects of one sign leave an error in u that grows with the compliance; defects of changing
-/// sign cancel.
+/// How far the defects of v of the steps so far add up, and the mean errors of u that they leave. Under a given force
+/// a defect of v makes the bodies creep as a force does. Defects of one sign leave an error in u that grows with the
+/// compliance; defects of changing sign cancel.
 ///
 /// Holds the creep response to the defects and to their absolute values. The ratio of the two responses measures the
 /// agreement of signs.

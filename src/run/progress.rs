@@ -6,7 +6,8 @@ use crate::contact::StepReport;
 use crate::error::{Error, Result, finite, positive, within};
 use crate::rounded::rounded;
 
-/// A step that would end closer than this fraction of it before another end of a step ends there, and events are found as closely.
+/// A step that would end closer than this fraction of it before another end of a step ends there, and events are
+/// found as closely.
 pub(crate) const SAME_TIME: f64 = 1e-6;
 
 /// How far times may be apart that agree but for rounding, as 0.3 and 3 · 0.1 do.
@@ -38,15 +39,15 @@ impl Stepping {
         Stepping::Fixed { dt }
     }
 
-    /// Steps whose estimated error in time is at most `tolerance`, in \[1e-9, 0.1\]: the error of the approach under a
-    /// given force, the error of the force under a given approach, of both under a spring. It is relative to the displacement or force; for
-    /// small values it is relative to a fraction of the greatest of the run. Errors of the pressure at a point may be
-    /// larger, see [`ErrorBudget::pressure`](crate::run::ErrorBudget::pressure). The tolerance of the solver is 0.03 of
-    /// `tolerance`, 1e-6 at least, or [`Settings::tolerance`](crate::contact::Settings::tolerance) where that is set below
-    /// 1e-6.
+    /// Steps whose estimated error in time is at most `tolerance`, in \[1e-9, 0.1\]: the error of the approach under
+    /// a given force, the error of the force under a given approach, of both under a spring. It is relative to the
+    /// displacement or force; for small values it is relative to a fraction of the greatest of the run. Errors of the
+    /// pressure at a point may be larger, see [`ErrorBudget::pressure`](crate::run::ErrorBudget::pressure). The
+    /// tolerance of the solver is 0.03 of `tolerance`, 1e-6 at least, or
+    /// [`Settings::tolerance`](crate::contact::Settings::tolerance) where that is set below 1e-6.
     ///
-    /// Such a run looks at the whole history before its first step, at 4096 equal parts and at its breakpoints: a load that acts for a
-    /// shorter time than a part needs a breakpoint.
+    /// Such a run looks at the whole history before its first step, at 4096 equal parts and at its breakpoints: a
+    /// load that acts for a shorter time than a part needs a breakpoint.
     pub fn adaptive(tolerance: f64) -> Stepping {
         Stepping::Adaptive { tolerance }
     }
@@ -142,8 +143,8 @@ impl Progress {
     }
 }
 
-/// How far a run has come, from [`Run::progress`](crate::run::Run::progress). The number of steps to come is not known: take
-/// the share, of time or of its decades, along which the steps are spread.
+/// How far a run has come, from [`Run::progress`](crate::run::Run::progress). The number of steps to come is not
+/// known: take the share, of time or of its decades, along which the steps are spread.
 ///
 /// ```
 /// use viscocontact::prelude::*;
@@ -187,8 +188,9 @@ impl RunProgress {
         }
     }
 
-    /// The part of the decades of time that is over, 0 to 1: ln(1 + t/δ) over its value at the end, t counted from the start and δ
-    /// the first step. For adaptive steps under a load that is held, which grow in proportion to the time since it was applied.
+    /// The part of the decades of time that is over, 0 to 1: ln(1 + t/δ) over its value at the end, t counted from
+    /// the start and δ the first step. For adaptive steps under a load that is held, which grow in proportion to the
+    /// time since it was applied.
     pub fn share_of_decades(&self) -> f64 {
         let decades = |time: f64| ((time - self.start) / self.first_step).ln_1p();
         if self.first_step > 0.0 && self.until > self.start {

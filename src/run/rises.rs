@@ -31,8 +31,8 @@ impl Rise {
         self.depth >= 0.0 && self.rate > 0.0 && self.stiffness >= 0.0 && self.spring >= 0.0
     }
 
-    /// A surface that is off by δ is met too early or too late by δ/rate, in which time bodies respond by 1/C(δ/rate). Finds this
-    /// response for the δ that changes v by `most`.
+    /// A surface that is off by δ is met too early or too late by δ/rate, in which time bodies respond by
+    /// 1/C(δ/rate). Finds this response for the δ that changes v by `most`.
     pub(super) fn find_stiffness(&mut self, scene: &Scene, most: f64) {
         let compliance = |off: f64| scene.material.contact_compliance(off / self.rate);
         let off = (0..ITERATIONS).fold(self.depth, |off, _| most * compliance(off));

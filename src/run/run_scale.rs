@@ -38,8 +38,8 @@ pub(super) struct RunScale {
     pub(super) attracts: bool,
     /// Greatest force.
     force: f64,
-    /// Greatest prescribed depth below first touch, of the far end of a spring where there is one, and an estimate of the greatest v
-    /// that it requires.
+    /// Greatest prescribed depth below first touch, of the far end of a spring where there is one, and an estimate of
+    /// the greatest v that it requires.
     depth: f64,
     stress: f64,
     /// Estimated diameter of the contact under the spring that is driven deepest.
@@ -55,8 +55,8 @@ pub(super) struct RunScale {
 }
 
 impl RunScale {
-    /// The scale of a run from `state` along the history of a body to the time `until`. Rejects invalid loads of the history.
-    /// Finds how the bodies respond where they meet, to within such a tolerance of the steps.
+    /// The scale of a run from `state` along the history of a body to the time `until`. Rejects invalid loads of the
+    /// history. Finds how the bodies respond where they meet, to within such a tolerance of the steps.
     pub(super) fn new(
         scene: &Scene,
         state: &State,
@@ -143,9 +143,9 @@ impl RunScale {
         }
     }
 
-    /// Includes the force of the spring that is driven deepest, by z, in bodies of this `compliance`. Under the force k z of a spring that stays
-    /// compressed they would yield by h; spring and bodies in series yield about h z/(z + h). The force of a paraboloid grows with the power
-    /// 3/2 of its depth, its width with the root.
+    /// Includes the force of the spring that is driven deepest, by z, in bodies of this `compliance`. Under the force
+    /// k z of a spring that stays compressed they would yield by h; spring and bodies in series yield about h
+    /// z/(z + h). The force of a paraboloid grows with the power 3/2 of its depth, its width with the root.
     fn include_spring(&mut self, scene: &Scene, state: &State, body: usize, compliance: f64, loads: &[(f64, Load)]) {
         let springs = loads.iter().filter_map(|(_, load)| match load {
             Load::Spring { stiffness, .. } => Some((self.magnitude(load), stiffness)),
@@ -161,8 +161,8 @@ impl RunScale {
         }
     }
 
-    /// The compliance \[1/Pa\] that the spring of a load adds to the compliance of the bodies, as a circular contact answers a small change of
-    /// its depth; infinite for a given force.
+    /// The compliance \[1/Pa\] that the spring of a load adds to the compliance of the bodies, as a circular contact
+    /// answers a small change of its depth; infinite for a given force.
     fn give(&self, load: &Load) -> f64 {
         match load {
             Load::Force { .. } => f64::INFINITY,
@@ -171,8 +171,8 @@ impl RunScale {
         }
     }
 
-    /// The force, or the prescribed depth below first touch, of the body or of the far end of its spring. 0 while the bodies are apart: the gap is no scale for the
-    /// load.
+    /// The force, or the prescribed depth below first touch, of the body or of the far end of its spring. 0 while the
+    /// bodies are apart: the gap is no scale for the load.
     pub(super) fn magnitude(&self, load: &Load) -> f64 {
         match load {
             Load::Force { normal, .. } => normal.abs(),
@@ -201,7 +201,8 @@ impl RunScale {
         }
     }
 
-    /// The part of the drive of a spring by which it presses the bodies down, when they have been loaded for the time `age`.
+    /// The part of the drive of a spring by which it presses the bodies down, when they have been loaded for the time
+    /// `age`.
     fn share(&self, scene: &Scene, load: &Load, age: f64) -> f64 {
         let compliance = scene.material.contact_compliance(age);
         let whole = compliance + SECANT * self.give(load);
@@ -234,8 +235,8 @@ impl RunScale {
         if stiffness > 0.0 { stiffness / (1.0 + give * stiffness) } else { 0.0 }
     }
 
-    /// Greatest depth and stiffness, and least give, of such rises that end at `now` or later; the depth and the stiffness are 0 if there
-    /// are none.
+    /// Greatest depth and stiffness, and least give, of such rises that end at `now` or later; the depth and the
+    /// stiffness are 0 if there are none.
     fn meeting_after(&self, now: f64, is_meant: impl Fn(&Rise) -> bool) -> Meeting {
         let rises = self.rises.iter().filter(|rise| rise.end >= now && is_meant(rise));
         let meeting =
@@ -249,17 +250,17 @@ impl RunScale {
         self.tops[first..].iter().copied().take_while(move |&top| top < time)
     }
 
-    /// The first top of a prescribed approach, or of the far end of a spring, between `now` and `time` at which an upright body is below the
-    /// undeformed surface. Wherever the surface is by then, a body that is still above it there was so ever since `now`: surfaces that nothing
-    /// presses recover, and rise.
+    /// The first top of a prescribed approach, or of the far end of a spring, between `now` and `time` at which an
+    /// upright body is below the undeformed surface. Wherever the surface is by then, a body that is still above it
+    /// there was so ever since `now`: surfaces that nothing presses recover, and rise.
     pub(super) fn first_top(&self, history: &dyn LoadHistory, now: f64, time: f64) -> Option<f64> {
         let is_below = |&top: &f64| approach(&history.at(top)).is_some_and(|approach| approach > self.touch);
         let seen = first_top_of_step(history, [now, time], is_below);
         self.tops_within(now, time).find(is_below).into_iter().chain(seen).reduce(f64::min)
     }
 
-    /// The time between `now` and `stop` at which a prescribed approach or a spring first brings undisturbed bodies into contact.
-    /// The displacement grows from this time on, as after a corner. Infinite if there is none.
+    /// The time between `now` and `stop` at which a prescribed approach or a spring first brings undisturbed bodies
+    /// into contact. The displacement grows from this time on, as after a corner. Infinite if there is none.
     pub(super) fn first_touch(&self, history: &dyn LoadHistory, now: f64, stop: f64) -> f64 {
         let apart = |time: f64| match history.at(time) {
             Load::Approach { approach: depth, .. } | Load::Spring { drive: depth, .. } => depth < self.touch,

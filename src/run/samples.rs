@@ -29,8 +29,8 @@ impl Sample<'_> {
 }
 
 impl<C: RunContact> Sample<'_, C> {
-    /// The contact at this time. In space its pressure is that of the steps: [`Sample::fields`] may have a more accurate one. On
-    /// elastic states it is one of steps as fine as the fields need that were asked for.
+    /// The contact at this time. In space its pressure is that of the steps: [`Sample::fields`] may have a more
+    /// accurate one. On elastic states it is one of steps as fine as the fields need that were asked for.
     pub fn contact(&self) -> &C {
         self.exact.as_ref().and_then(C::instead).unwrap_or(&self.contact)
     }
@@ -58,13 +58,13 @@ impl<C: RunContact> Sample<'_, C> {
 }
 
 impl<C: RunContact> Run<'_, C> {
-    /// The states of the last step, in the order of time: at each time to sample within it ([`Run::sample_at`]), and at its
-    /// end; of the first step of a run that does not begin with a jump of its load at its start, too. Times that agree but for rounding
-    /// are one. Each is as exact as the end of the step
-    /// ([`Run::within_step`]). So a run of few long steps is drawn as a curve, and the steps stay as they are.
+    /// The states of the last step, in the order of time: at each time to sample within it ([`Run::sample_at`]), and
+    /// at its end; of the first step of a run that does not begin with a jump of its load at its start, too. Times
+    /// that agree but for rounding are one. Each is as exact as the end of the step ([`Run::within_step`]). So a run
+    /// of few long steps is drawn as a curve, and the steps stay as they are.
     ///
-    /// A sample inside the step costs a copy of the contact and a contact problem; the end costs nothing. Where ranks share out
-    /// the contact, all of them take the samples.
+    /// A sample inside the step costs a copy of the contact and a contact problem; the end costs nothing. Where ranks
+    /// share out the contact, all of them take the samples.
     ///
     /// ```
     /// use viscocontact::prelude::*;
@@ -124,8 +124,8 @@ impl<C: RunContact> Run<'_, C> {
         })
     }
 
-    /// The contact at a time within the last step of the run, its ends included, under the load of the history at that time:
-    /// as exact as the steps of the run. See [`ViscoelasticContact::within_step`].
+    /// The contact at a time within the last step of the run, its ends included, under the load of the history at
+    /// that time: as exact as the steps of the run. See [`ViscoelasticContact::within_step`].
     ///
     /// ```
     /// use viscocontact::prelude::*;

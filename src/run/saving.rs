@@ -19,9 +19,9 @@ impl ViscoelasticContact {
     ///
     /// Needs the feature `checkpoint`.
     ///
-    /// The file is complete and on the medium when this returns; until then, what was there before is not touched. It carries the version
-    /// of its format, its length and a checksum. About 50 bytes per computed cell, 8 more for each relaxation time, and 8 per cell of the
-    /// whole grid, or of its computed part where the gap is symmetric.
+    /// The file is complete and on the medium when this returns; until then, what was there before is not touched. It
+    /// carries the version of its format, its length and a checksum. About 50 bytes per computed cell, 8 more for
+    /// each relaxation time, and 8 per cell of the whole grid, or of its computed part where the gap is symmetric.
     ///
     /// ```
     /// use viscocontact::prelude::*;
@@ -46,37 +46,38 @@ impl ViscoelasticContact {
     /// # Ok::<(), Error>(())
     /// ```
     ///
-    /// Contacts may save to one path at once: the file always belongs to one of them, in the end to the last to finish. Where the path
-    /// is a link, the file that it leads to is replaced.
+    /// Contacts may save to one path at once: the file always belongs to one of them, in the end to the last to
+    /// finish. Where the path is a link, the file that it leads to is replaced.
     ///
-    /// Where [ranks](crate::parallel) share out the contact, it is a call of all of them: rank 0 writes the file, and the others
-    /// send it their rows, some at a time. Any number of ranks can resume from it, and one process too. Ranks can resume from the
-    /// file of one process that computed the whole grid, as with [`Settings::window`](crate::contact::Settings::window) set to
-    /// false.
+    /// Where [ranks](crate::parallel) share out the contact, it is a call of all of them: rank 0 writes the file, and
+    /// the others send it their rows, some at a time. Any number of ranks can resume from it, and one process too.
+    /// Ranks can resume from the file of one process that computed the whole grid, as with
+    /// [`Settings::window`](crate::contact::Settings::window) set to false.
     ///
     /// # Errors
-    /// If the file cannot be written, or there is something other than a file at `path` ([`FileError::NotAFile`](crate::FileError::NotAFile)).
+    /// If the file cannot be written, or there is something other than a file at `path`
+    /// ([`FileError::NotAFile`](crate::FileError::NotAFile)).
     pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
         self.save_with::<(Progress, StepControl)>(path.as_ref(), None)
     }
 
-    /// Puts a saved state in the place of this one. The contact must be built as the one was that was saved: same grid, bodies,
-    /// kernel, geometry and material. Settings may differ in how steps are solved (solver, tolerance, iterations, edge,
-    /// memory), not in the rest. Where an indenter has moved, it is where it was.
+    /// Puts a saved state in the place of this one. The contact must be built as the one was that was saved: same
+    /// grid, bodies, kernel, geometry and material. Settings may differ in how steps are solved (solver, tolerance,
+    /// iterations, edge, memory), not in the rest. Where an indenter has moved, it is where it was.
     ///
-    /// Scenes are compared by sums over gap and influence and by the rigid body of each cell. Materials are compared by their
-    /// series, or, without a series, by their compliance at eight times a decade; closures with equal values there count as
-    /// equal. A run along a history that saved the contact ([`Run::autosave_to`](crate::run::Run::autosave_to)) resumes with
-    /// the next [`ViscoelasticContact::follow`].
+    /// Scenes are compared by sums over gap and influence and by the rigid body of each cell. Materials are compared
+    /// by their series, or, without a series, by their compliance at eight times a decade; closures with equal values
+    /// there count as equal. A run along a history that saved the contact
+    /// ([`Run::autosave_to`](crate::run::Run::autosave_to)) resumes with the next [`ViscoelasticContact::follow`].
     ///
     /// Needs the feature `checkpoint`.
     ///
     /// # Errors
-    /// If the file cannot be read, is no checkpoint, is of a newer or older format, cut short, damaged, or of another scene
-    /// ([`Error::Checkpoint`](crate::Error::Checkpoint)); the contact is then as it was.
+    /// If the file cannot be read, is no checkpoint, is of a newer or older format, cut short, damaged, or of another
+    /// scene ([`Error::Checkpoint`](crate::Error::Checkpoint)); the contact is then as it was.
     ///
-    /// Where [ranks](crate::parallel) share out the contact, it is a call of all of them, which must all see the file. Each rank
-    /// reads its rows and checks its part of the file. An error of one rank is an error on all
+    /// Where [ranks](crate::parallel) share out the contact, it is a call of all of them, which must all see the
+    /// file. Each rank reads its rows and checks its part of the file. An error of one rank is an error on all
     /// ([`RanksError::Failed`](crate::parallel::RanksError::Failed)). Ranks cannot resume from a window of the grid
     /// ([`Settings::window`](crate::contact::Settings::window)), nor after an indenter has moved
     /// ([`CheckpointError::OtherScene`](crate::contact::CheckpointError::OtherScene)).
@@ -88,10 +89,10 @@ impl ViscoelasticContact {
 }
 
 impl<C: RunContact> Run<'_, C> {
-    /// Saves the run to `path` whenever `every` has passed, after the step under way then, and at its end. An interruption loses
-    /// no more than that. A contact that is built alike resumes from the file ([`ViscoelasticContact::resume`]): the next run of
-    /// the same stepping takes the same steps, bitwise. Where [ranks](crate::parallel) share out the
-    /// contact, all of them save when the time has passed on one.
+    /// Saves the run to `path` whenever `every` has passed, after the step under way then, and at its end. An
+    /// interruption loses no more than that. A contact that is built alike resumes from the file
+    /// ([`ViscoelasticContact::resume`]): the next run of the same stepping takes the same steps, bitwise. Where
+    /// [ranks](crate::parallel) share out the contact, all of them save when the time has passed on one.
     ///
     /// Needs the feature `checkpoint`.
     ///

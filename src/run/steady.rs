@@ -31,9 +31,9 @@ pub struct SteadyMotion {
     velocity: f64;
     /// Load on the indenter.
     load: Load;
-    /// Tolerance of the steady state, in (0, 1) (default: 1e-3): of the pressure's change while the indenter travels by the length of
-    /// the contact, Σ |Δp| over Σ p; of what slow creep has still to change of approach or lateral force, relative to its value; and
-    /// of what has left the grid. The noise of the solver is about a hundred times
+    /// Tolerance of the steady state, in (0, 1) (default: 1e-3): of the pressure's change while the indenter travels
+    /// by the length of the contact, Σ |Δp| over Σ p; of what slow creep has still to change of approach or lateral
+    /// force, relative to its value; and of what has left the grid. The noise of the solver is about a hundred times
     /// [`Settings::tolerance`](crate::contact::Settings::tolerance).
     tolerance: f64, with_tolerance;
     /// Greatest distance to travel \[m\] (default: `None`, ten times the length of the grid).
@@ -74,19 +74,21 @@ pub struct SteadyRun<'a> {
 }
 
 impl ViscoelasticContact {
-    /// Moves the indenter steadily over the bodies, by steps of whole cells, towards the steady state: to watch the approach, and to go on from there. The state
-    /// itself is one contact problem, whatever the relaxation times: [`sliding`](crate::sliding). Needs [`Frame::Indenter`](crate::contact::Frame::Indenter).
+    /// Moves the indenter steadily over the bodies, by steps of whole cells, towards the steady state: to watch the
+    /// approach, and to go on from there. The state itself is one contact problem, whatever the relaxation times:
+    /// [`sliding`](crate::sliding). Needs [`Frame::Indenter`](crate::contact::Frame::Indenter).
     ///
     /// Long strides come first, an eighth of the contact length each, until the bodies have passed the whole grid.
     /// Shorter strides follow, down to one cell, until the motion is steady. The early strides are cheap, and their
     /// error decays.
     ///
-    /// The motion is steady where three things are below the [tolerance](SteadyMotion::tolerance). The pressure changes no more. Each
-    /// term of creep, of retardation time λ, is at its limit for each wave of the pressure. On bodies that are periodic along the
-    /// motion this takes a track of several v λ: a term is e^(−t/λ) short of its limit, and slow terms change slowly. On other
-    /// bodies, what lies behind the grid would change neither approach nor lateral force: the grid should reach several v λ behind
-    /// the contact, ten in line contact. Otherwise the run ends in [`StepError::NotSteady`], which names the term, and how far to
-    /// travel, or how long a grid to take. The contact is then where the run ended.
+    /// The motion is steady where three things are below the [tolerance](SteadyMotion::tolerance). The pressure
+    /// changes no more. Each term of creep, of retardation time λ, is at its limit for each wave of the pressure. On
+    /// bodies that are periodic along the motion this takes a track of several v λ: a term is e^(−t/λ) short of its
+    /// limit, and slow terms change slowly. On other bodies, what lies behind the grid would change neither approach
+    /// nor lateral force: the grid should reach several v λ behind the contact, ten in line contact. Otherwise the
+    /// run ends in [`StepError::NotSteady`], which names the term, and how far to travel, or how long a grid to take.
+    /// The contact is then where the run ended.
     ///
     /// ```
     /// use std::sync::Arc;
@@ -107,8 +109,8 @@ impl ViscoelasticContact {
     /// ```
     ///
     /// # Errors
-    /// If the grid is fixed to the bodies, the velocity zero or not finite, the tolerance not in (0, 1), or the bodies flow without end:
-    /// there is no steady state.
+    /// If the grid is fixed to the bodies, the velocity zero or not finite, the tolerance not in (0, 1), or the
+    /// bodies flow without end: there is no steady state.
     pub fn toward_steady(&mut self, motion: SteadyMotion) -> Result<SteadyRun<'_>> {
         SteadyRun::new(self, motion)
     }
@@ -203,8 +205,8 @@ impl<'a> SteadyRun<'a> {
         self.change
     }
 
-    /// What slow terms of creep have still to change of approach or lateral force, relative to its value; infinite before the first
-    /// full length of the contact.
+    /// What slow terms of creep have still to change of approach or lateral force, relative to its value; infinite
+    /// before the first full length of the contact.
     pub fn outstanding(&self) -> f64 {
         self.outstanding
     }

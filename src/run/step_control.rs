@@ -12,9 +12,10 @@ use crate::run::progress::Stepping;
 use crate::run::run_scale::RunScale;
 use crate::run::track::Track;
 
-/// Controls the steps of a run in space: the one owner of their length. Adaptive steps keep their error below the tolerance. Two errors
-/// count: the error of the displacement within the step ([`History::time_error`](crate::hereditary::History::time_error)), and the
-/// deviation of the load from the polynomial through its values at the last three nodes and the end of the step.
+/// Controls the steps of a run in space: the one owner of their length. Adaptive steps keep their error below the
+/// tolerance. Two errors count: the error of the displacement within the step
+/// ([`History::time_error`](crate::hereditary::History::time_error)), and the deviation of the load from the
+/// polynomial through its values at the last three nodes and the end of the step.
 #[derive(Debug, Clone, Default)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub struct StepControl {
@@ -48,8 +49,8 @@ const MAX_GROWTH_OF_DASHPOT: f64 = 2.4;
 const MAX_SHRINKAGE: f64 = 0.2;
 /// Safety factor of the step length.
 const SAFETY: f64 = 0.9;
-/// Exponents of the integral and the proportional control of an error that grows with the step, over its order (Hairer, Wanner,
-/// *Solving Ordinary Differential Equations II*, IV.2).
+/// Exponents of the integral and the proportional control of an error that grows with the step, over its order
+/// (Hairer, Wanner, *Solving Ordinary Differential Equations II*, IV.2).
 const INTEGRAL: f64 = 0.7;
 const PROPORTIONAL: f64 = 0.2;
 /// Lengths per decade tried for the first step after a jump, which is chosen from the material alone, ...
@@ -217,8 +218,8 @@ impl StepControl {
         Ok(longest * 10f64.powi(-DECADES))
     }
 
-    /// Chooses the length of the next step after the one proposed, of length `dt`, with the given error, which grows with the power
-    /// `order` of the length. Returns whether the error allows the step.
+    /// Chooses the length of the next step after the one proposed, of length `dt`, with the given error, which grows
+    /// with the power `order` of the length. Returns whether the error allows the step.
     pub(super) fn judge(&mut self, Proposal { order, dashpot, .. }: Proposal, dt: f64, error: f64) -> bool {
         // an error that overflows is no number
         let error = if error.is_nan() { f64::INFINITY } else { error };
@@ -307,8 +308,8 @@ fn order_of(state: &State, settings: &Settings) -> (u32, bool) {
     }
 }
 
-/// The end of a step of about `wanted` towards `stop`: `stop` if this is near, or halfway if the remainder would be much
-/// shorter than the step.
+/// The end of a step of about `wanted` towards `stop`: `stop` if this is near, or halfway if the remainder would be
+/// much shorter than the step.
 fn towards(now: f64, stop: f64, wanted: f64) -> f64 {
     let left = stop - now;
     if wanted >= 0.99 * left { stop } else { now + wanted.min(0.5 * left) }

@@ -3,8 +3,8 @@
 use crate::error::{Error, Result};
 use crate::load::{Load, LoadHistory, Tilt};
 
-/// Number of equal parts of a run, at whose ends its load is looked at before the first step: a load that acts for a shorter time
-/// is found only if its history names a breakpoint there.
+/// Number of equal parts of a run, at whose ends its load is looked at before the first step: a load that acts for a
+/// shorter time is found only if its history names a breakpoint there.
 const PARTS_OF_RUN: u32 = 4096;
 /// Number of equal parts of a step, for runs whose parts are longer than what happens in them.
 const PARTS_OF_STEP: usize = 64;

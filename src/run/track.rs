@@ -80,8 +80,8 @@ impl Track {
         self.is_driven = ends.iter().all(|load| approach(load).is_some());
     }
 
-    /// Greatest deviation of the load in a step to `time` from the polynomial through its last nodes and the load
-    /// at `time`, relative to the load or to a fraction of the greatest load of the run: at uneven positions, and at its
+    /// Greatest deviation of the load in a step to `time` from the polynomial through its last nodes and the load at
+    /// `time`, relative to the load or to a fraction of the greatest load of the run: at uneven positions, and at its
     /// tops. Rejects invalid loads of the history. Beyond the `tolerance` it is not followed further.
     pub(super) fn straying(
         &self,

@@ -4,22 +4,24 @@
 //!
 //! f(x) = ∫ e^(−s/l) K(x + s) ds/l over s > 0, l = v λ:
 //!
-//! the influence K of where the pressure has been. All parts are positive, so that f follows without cancellation from one recursion against the
-//! motion, f(x) = I(x) + e^(−d/l) f(x + d), with the integral I over one cell. The tail beyond the grid is taken in panels that double.
+//! the influence K of where the pressure has been. All parts are positive, so that f follows without cancellation
+//! from one recursion against the motion, f(x) = I(x) + e^(−d/l) f(x + d), with the integral I over one cell. The
+//! tail beyond the grid is taken in panels that double.
 //!
 //! The term resists the motion by the symmetric part of −∂f/∂x = (K − f)/l,
 //!
 //! S(x) = (K(x) − ½ (f(x) + f(−x)))/l = ∫ e^(−s/l) (K(x) − ½ (K(x + s) + K(x − s))) ds/l² over s > 0.
 //!
-//! Where l is much shorter than the distance of x from the sides of the cell, K and f agree in almost all digits. There S
-//! follows from the expansion of the integrand in s², so that each S is accurate whatever the reach.
+//! Where l is much shorter than the distance of x from the sides of the cell, K and f agree in almost all digits.
+//! There S follows from the expansion of the integrand in s², so that each S is accurate whatever the reach.
 
 use std::sync::OnceLock;
 
 use crate::kernel;
 use crate::quadrature::GaussLegendre;
 
-/// The influence of a cell on a row of points, and its values at the points of the panels: these serve all reaches, and both sides of the cell.
+/// The influence of a cell on a row of points, and its values at the points of the panels: these serve all reaches,
+/// and both sides of the cell.
 pub(super) struct Row {
     own: kernel::Row,
     /// Cells along the row, and their side \[m\].
@@ -42,16 +44,16 @@ const EXACT: f64 = 1e-15;
 const LEAST_PANEL: f64 = 1.0 / (1_u64 << 46) as f64;
 /// What is left of a term after its tail.
 const NEGLIGIBLE: f64 = 1e-19;
-/// The loss of a reach below this part of a cell takes its expansion where that holds. Without it the drag of a contact of n
-/// cells is in error by about 1e-15 n (d/l)².
+/// The loss of a reach below this part of a cell takes its expansion where that holds. Without it the drag of a
+/// contact of n cells is in error by about 1e-15 n (d/l)².
 const SHORT: f64 = 0.25;
-/// The expansion holds up to this part of the distance from the sides of the cell: the first order left out is 7! l⁶ of the
-/// whole, 5e-9, and K − f would lose four digits.
+/// The expansion holds up to this part of the distance from the sides of the cell: the first order left out is 7! l⁶
+/// of the whole, 5e-9, and K − f would lose four digits.
 const EXPANDED: f64 = 0.01;
 /// Orders of the expansion, in l, l³ and l⁵.
 const ORDERS: usize = 3;
-/// Points on each side from which it follows, and the distance from the sides of the cell over their spacing: interpolation
-/// is then in error by Π k²/20² = 3e-12, and the rounding of K grows by 20².
+/// Points on each side from which it follows, and the distance from the sides of the cell over their spacing:
+/// interpolation is then in error by Π k²/20² = 3e-12, and the rounding of K grows by 20².
 const SIDE: usize = 8;
 const SPACINGS: f64 = 20.0;
 
@@ -81,8 +83,8 @@ impl Row {
         row
     }
 
-    /// The smallest number of points that integrates over a panel exactly, as an index of [`POINTS`]: the error is ρ^(−n), ρ of the
-    /// greatest ellipse about the panel in which the influence is analytic.
+    /// The smallest number of points that integrates over a panel exactly, as an index of [`POINTS`]: the error is
+    /// ρ^(−n), ρ of the greatest ellipse about the panel in which the influence is analytic.
     fn points(&self, begin: f64, length: f64) -> Option<usize> {
         let rho = |at: f64| {
             let [x, y] = [(at - begin - 0.5 * length) / (0.5 * length), self.own.aside / (0.5 * length)];
@@ -130,8 +132,8 @@ impl Row {
         (0..n).map(loss).collect()
     }
 
-    /// (2m)! times the coefficients of s^(2m) in K(x) − ½ (K(x + s) + K(x − s)), m = 1, 2, 3, at each cell: by interpolation
-    /// between points whose spacing is as many cells as fit, or less than one beside the source.
+    /// (2m)! times the coefficients of s^(2m) in K(x) − ½ (K(x + s) + K(x − s)), m = 1, 2, 3, at each cell: by
+    /// interpolation between points whose spacing is as many cells as fit, or less than one beside the source.
     fn expand(&self, rules: &Rules) -> Vec<[f64; ORDERS]> {
         let Row { n, d, ref elastic, ref own, .. } = *self;
         let stride = |m: usize| ((self.distance(m) / (SPACINGS * d)) as usize).min(n / (2 * SIDE));
@@ -292,8 +294,8 @@ impl Rules {
     }
 }
 
-/// λ ½ ∫ e^(−λ (1 + t)/2) P_k(t) dt over [−1, 1] = λ (−1)^k e^(−z) i_k(z), z = λ/2, i_k the modified spherical Bessel functions
-/// (NIST Handbook of Mathematical Functions, 2010, 10.49 and 10.54).
+/// λ ½ ∫ e^(−λ (1 + t)/2) P_k(t) dt over [−1, 1] = λ (−1)^k e^(−z) i_k(z), z = λ/2, i_k the modified spherical Bessel
+/// functions (NIST Handbook of Mathematical Functions, 2010, 10.49 and 10.54).
 fn moments(length_over_reach: f64, count: usize) -> Vec<f64> {
     let (lambda, z) = (length_over_reach, 0.5 * length_over_reach);
     let sign = |k: usize| if k.is_multiple_of(2) { 1.0 } else { -1.0 };

@@ -1,7 +1,8 @@
 //! The contact problem of a steady motion: p ≥ 0, h ≥ 0, p h = 0 and the balance of the load.
 //!
-//! It is not left to the solver of equilibria: bodies that lose energy respond by an operator that is not symmetric, under which there is no
-//! energy to descend in and conjugate gradients do not end. GMRES solves on a set of cells, and sets follow each other until one stands.
+//! It is not left to the solver of equilibria: bodies that lose energy respond by an operator that is not symmetric,
+//! under which there is no energy to descend in and conjugate gradients do not end. GMRES solves on a set of cells,
+//! and sets follow each other until one stands.
 
 use std::collections::HashSet;
 use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher};
@@ -27,7 +28,8 @@ const CYCLES: usize = 3;
 const FIRST_PART: f64 = 0.3;
 /// Penetration outside of the contact may exceed the root mean square of the residual so many times.
 const SLACK: f64 = 10.0;
-/// The residual may exceed the tolerance so many times: it was brought down to it before the displacement was computed anew.
+/// The residual may exceed the tolerance so many times: it was brought down to it before the displacement was
+/// computed anew.
 const BELOW: f64 = 1.5;
 /// A negative pressure of this part of the greatest is rounding.
 const ROUNDING: f64 = 1e-9;
@@ -144,8 +146,9 @@ impl Problem<'_> {
 
     /// The state, from the `guess` of a pressure, where it is positive somewhere.
     ///
-    /// A primal–dual active set: on each set of cells the pressure follows from a linear equation, which GMRES solves with the
-    /// inverse of the bodies' response, restricted to the set, as preconditioner. Cells that pull leave the set, cells that penetrate join.
+    /// A primal–dual active set: on each set of cells the pressure follows from a linear equation, which GMRES solves
+    /// with the inverse of the bodies' response, restricted to the set, as preconditioner. Cells that pull leave the
+    /// set, cells that penetrate join.
     pub(super) fn solve(&self, bodies: &mut MovingBodies, guess: &[f64]) -> Found {
         let Problem { gap, tolerance, grid, free, .. } = *self;
         let (cells, n2) = (gap.len(), grid.cells()[1]);
@@ -229,8 +232,9 @@ impl Problem<'_> {
         found
     }
 
-    /// Solves for the pressure on a set, of which the displacement is known, down to the root mean square of the residual that is `allowed`, or to a `part` of the
-    /// first one. Returns the residual left, and writes displacement and motion.
+    /// Solves for the pressure on a set, of which the displacement is known, down to the root mean square of the
+    /// residual that is `allowed`, or to a `part` of the first one. Returns the residual left, and writes
+    /// displacement and motion.
     fn solve_on(
         &self,
         balance: &Balance<'_>,
@@ -265,8 +269,9 @@ impl Problem<'_> {
         }
     }
 
-    /// The length by which residuals are measured: the root mean square of the gap that the contact closes, or of a small part of all gaps
-    /// where the contact is flat, and of the displacement, where a face has no other gap; its rounding is `least`.
+    /// The length by which residuals are measured: the root mean square of the gap that the contact closes, or of a
+    /// small part of all gaps where the contact is flat, and of the displacement, where a face has no other gap; its
+    /// rounding is `least`.
     fn unit(&self, balance: &Balance<'_>, displacement: &[f64], least: f64) -> f64 {
         let mut heights = balance.of(self.gap);
         balance.bring(&mut heights, [0.0; 3]);
@@ -277,7 +282,8 @@ impl Problem<'_> {
         if high > low { own } else { own.max(least / self.tolerance) }
     }
 
-    /// The cells of a first set: the lowest ones, those below zero under a prescribed approach, of a body that leans on its support.
+    /// The cells of a first set: the lowest ones, those below zero under a prescribed approach, of a body that leans
+    /// on its support.
     fn lowest(&self) -> Vec<bool> {
         let n2 = self.grid.cells()[1];
         let tilt = if self.free.tilts() { self.support().tilt } else { RigidMotion::default() };

@@ -1,5 +1,6 @@
-//! Minimal residuals over Krylov spaces, preconditioned from the right, by orthonormal images (simpler GMRES: H. F. Walker & L. Zhou, Numer. Linear Algebra
-//! Appl. 1, 1994). The next direction is the residual where it has shrunk, else the last image (P. Jiránek & M. Rozložník, ibid. 17, 2010).
+//! Minimal residuals over Krylov spaces, preconditioned from the right, by orthonormal images (simpler GMRES: H. F.
+//! Walker & L. Zhou, Numer. Linear Algebra Appl. 1, 1994). The next direction is the residual where it has shrunk,
+//! else the last image (P. Jiránek & M. Rozložník, ibid. 17, 2010).
 
 /// Greatest number of directions.
 pub(super) const MOST: usize = 60;
@@ -8,8 +9,8 @@ const LEAST: f64 = 1e-14;
 /// A residual has shrunk to this part of the one before.
 const SHRUNK: f64 = 0.9;
 
-/// Adds to `x` what brings the residual of a linear equation from `residual` down to `goal`. `apply` maps a direction to the preconditioned direction and its image,
-/// or ends the iteration.
+/// Adds to `x` what brings the residual of a linear equation from `residual` down to `goal`. `apply` maps a direction
+/// to the preconditioned direction and its image, or ends the iteration.
 pub(super) fn gmres(
     x: &mut [f64],
     mut residual: Vec<f64>,

@@ -1,12 +1,13 @@
 //! A layer on a half-space that creeps otherwise.
 //!
-//! In a steady motion a wave meets both at one frequency, so that it displaces by (2/q) C₁ L(μ, qh) with the ratio μ = G₁/G₂ of the complex
-//! moduli. Where bodies end, its coefficients are in three parts,
+//! In a steady motion a wave meets both at one frequency, so that it displaces by (2/q) C₁ L(μ, qh) with the ratio
+//! μ = G₁/G₂ of the complex moduli. Where bodies end, its coefficients are in three parts,
 //!
 //! (2/q) C₁ L = (2/q) C₁ + (2/q) (C₂ − C₁) e^(−2qh) + rest:
 //!
-//! a half-space of the layer's material, and the influence of cells at a depth 2h below the points, both by recursion. The rest is bounded at
-//! q = 0, vanishes as e^(−2qh), and is integrated on panels that double from zero on.
+//! a half-space of the layer's material, and the influence of cells at a depth 2h below the points, both by
+//! recursion. The rest is bounded at q = 0, vanishes as e^(−2qh), and is integrated on panels that double from zero
+//! on.
 
 use std::f64::consts::FRAC_1_PI;
 use std::ops::Range;
@@ -97,8 +98,8 @@ impl LayerOnBase {
         2.0 / q * own * response(q * self.layer.thickness())
     }
 
-    /// The rest of waves `aside`, at each wave number of the nodes `along`: of all waves, or of the mean alone, the second part is taken out. `moves`:
-    /// the nodes, or the waves, pass at a `speed`.
+    /// The rest of waves `aside`, at each wave number of the nodes `along`: of all waves, or of the mean alone, the
+    /// second part is taken out. `moves`: the nodes, or the waves, pass at a `speed`.
     fn rest(&self, along: &[(f64, f64)], aside: &[f64], (lines, moves, speed): (bool, bool, f64)) -> [Mat<f64>; 2] {
         let h = self.layer.thickness();
         let mut parts = [Mat::zeros(along.len(), aside.len()), Mat::zeros(along.len(), aside.len())];

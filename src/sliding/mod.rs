@@ -1,8 +1,9 @@
 //! Steady sliding and rolling as one contact problem for each velocity.
 //!
-//! In the frame of an indenter that moves steadily over creeping bodies nothing changes, and no time step is needed: a wave of the pressure
-//! displaces by the compliance of the bodies at the frequency at which it passes a point. [`SteadySliding`] finds the one state of
-//! contact of a velocity and a load, however long the relaxation times are. To step there takes as many steps as the longest of them:
+//! In the frame of an indenter that moves steadily over creeping bodies nothing changes, and no time step is needed:
+//! a wave of the pressure displaces by the compliance of the bodies at the frequency at which it passes a point.
+//! [`SteadySliding`] finds the one state of contact of a velocity and a load, however long the relaxation times are.
+//! To step there takes as many steps as the longest of them:
 //! [`ViscoelasticContact::toward_steady`](crate::ViscoelasticContact::toward_steady) is for watching the approach.
 //!
 //! All friction comes from hysteresis: the surfaces have none.
@@ -42,7 +43,8 @@ use bodies::Bodies;
 use contact_problem::{Found, Problem};
 use operator::MovingBodies;
 
-/// A contact that moves steadily over creeping bodies, made by [`Builder::build_sliding`](crate::contact::Builder::build_sliding).
+/// A contact that moves steadily over creeping bodies, made by
+/// [`Builder::build_sliding`](crate::contact::Builder::build_sliding).
 ///
 /// ```
 /// use viscocontact::prelude::*;
@@ -107,9 +109,10 @@ fn passive_drag(bodies: &MovingBodies, spectrum: &[f64], velocity: [f64; 2]) -> 
 }
 
 impl SteadySliding {
-    /// Finds the state of contact under `load`, a force or an approach, of the indenter that moves over the bodies with `velocity` \[m/s\]
-    /// along x1 and x2. At velocity 0 it is the relaxed contact, at a great one the one of the elastic response. The search begins at the state found
-    /// last, so that sweeps over velocities or loads cost less.
+    /// Finds the state of contact under `load`, a force or an approach, of the indenter that moves over the bodies
+    /// with `velocity` \[m/s\] along x1 and x2. At velocity 0 it is the relaxed contact, at a great one the one of
+    /// the elastic response. The search begins at the state found last, so that sweeps over velocities or loads cost
+    /// less.
     ///
     /// Another temperature is the same as the velocity times its shift factor
     /// ([`TimeTemperature::shift_factor`](crate::rheology::TimeTemperature::shift_factor)).
@@ -188,8 +191,9 @@ impl SteadySliding {
         })
     }
 
-    /// Lets another thread end the search under way in [`SteadySliding::at`], and the searches of a sweep, as [`Run::cancelled_by`](crate::run::Run::cancelled_by): the
-    /// call ends in [`Error::Cancelled`], and the state found last is kept.
+    /// Lets another thread end the search under way in [`SteadySliding::at`], and the searches of a sweep, as
+    /// [`Run::cancelled_by`](crate::run::Run::cancelled_by): the call ends in [`Error::Cancelled`], and the state
+    /// found last is kept.
     ///
     /// ```
     /// use std::sync::Arc;
@@ -237,8 +241,8 @@ impl SteadySliding {
         Fields { ground, held, surface, view: &self.view, kernel: None, about }
     }
 
-    /// The motion that a load leaves free to the body, if it can be balanced, and the part that it prescribes, whose approach
-    /// counts from the datum of the gap.
+    /// The motion that a load leaves free to the body, if it can be balanced, and the part that it prescribes, whose
+    /// approach counts from the datum of the gap.
     fn freedom(&self, load: Load) -> Result<(Freedom, RigidMotion)> {
         let (ground, Held { indenter, region, .. }) = (&self.scene.ground, &self.held);
         let tolerance = ground.settings.tolerance;

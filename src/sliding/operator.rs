@@ -11,15 +11,17 @@ use crate::kernel::{fast_length, waves_at};
 /// A reach beyond so many cells gives nothing.
 const LONGEST: f64 = 1e200;
 
-/// A linear map of the pressure \[Pa\] to the displacement \[m\] of the bodies that it moves over, and an approximate inverse.
+/// A linear map of the pressure \[Pa\] to the displacement \[m\] of the bodies that it moves over, and an approximate
+/// inverse.
 ///
-/// A point x in the frame of the pressure was at x + v s a time s before. On bodies that are periodic along both axes a wave q of the pressure
-/// therefore displaces by
+/// A point x in the frame of the pressure was at x + v s a time s before. On bodies that are periodic along both axes
+/// a wave q of the pressure therefore displaces by
 ///
 /// u(q) = K(q) C(q·v) p(q), C(ω) = C(0) + Σ C_k/(1 − iω λ_k):
 ///
-/// the conjugate of the complex compliance at the frequency at which the wave passes a point. Other bodies have influence coefficients in
-/// place of waves. The real part of C is positive, so that the map is strictly monotone, and a contact has one steady state.
+/// the conjugate of the complex compliance at the frequency at which the wave passes a point. Other bodies have
+/// influence coefficients in place of waves. The real part of C is positive, so that the map is strictly monotone,
+/// and a contact has one steady state.
 #[derive(Debug, Clone)]
 pub(super) struct MovingBodies {
     response: Multiplier,
@@ -35,8 +37,8 @@ pub(super) struct MovingBodies {
 pub(super) struct Coefficients {
     /// u under a unit pressure on a cell, at the distances −(n − 1) to n − 1.
     pub(super) response: Vec<Vec<f64>>,
-    /// The symmetric part of −∂u/∂x, which resists, at the distances 0 to n − 1. The other part is larger by many orders of
-    /// magnitude where the motion is slow.
+    /// The symmetric part of −∂u/∂x, which resists, at the distances 0 to n − 1. The other part is larger by many
+    /// orders of magnitude where the motion is slow.
     pub(super) loss: Vec<Vec<f64>>,
 }
 
@@ -46,7 +48,8 @@ impl Coefficients {
         Coefficients { response: of(2 * cells - 1), loss: of(cells) }
     }
 
-    /// Adds the influence of a row, of compliances with their reaches l \[m\]: C K where l is 0, else C f, which resists by C S.
+    /// Adds the influence of a row, of compliances with their reaches l \[m\]: C K where l is 0, else C f, which
+    /// resists by C S.
     pub(super) fn add(&mut self, j: usize, row: &Row, creep: &[(f64, f64)], rules: &Rules) {
         let (at_once, moving): (Vec<_>, Vec<_>) = creep.iter().partition(|(_, reach)| *reach == 0.0);
         let at_once: f64 = at_once.iter().map(|(compliance, _)| compliance).sum();
@@ -102,8 +105,8 @@ impl MovingBodies {
 
     /// Bodies of influence coefficients that move along an axis, `backward` or not.
     ///
-    /// The approximate inverse inverts the nearest circulant matrix on the grid without padding (T. F. Chan, SIAM J. Sci. Stat. Comput.
-    /// 9, 1988): along each axis that ends c_k = ((n − k) a_k + k a_(k − n))/n.
+    /// The approximate inverse inverts the nearest circulant matrix on the grid without padding (T. F. Chan, SIAM J.
+    /// Sci. Stat. Comput. 9, 1988): along each axis that ends c_k = ((n − k) a_k + k a_(k − n))/n.
     pub(super) fn of_coefficients(
         cells: [usize; 2],
         periodic: [bool; 2],

@@ -5,8 +5,8 @@ use super::operator::MovingBodies;
 use crate::Grid;
 use crate::solver::Freedom;
 
-/// Bodies that are periodic along both axes are first solved on half as many cells along each axis, down to so many at least. (A body that ends is padded in its
-/// response.)
+/// Bodies that are periodic along both axes are first solved on half as many cells along each axis, down to so many
+/// at least. (A body that ends is padded in its response.)
 const COARSEST: usize = 128;
 /// Residual allowed there.
 const ROUGHLY: f64 = 1e-3;
@@ -17,9 +17,10 @@ const LEAST_STEP: f64 = 1e-3;
 const NEGLIGIBLE: f64 = 1e-3;
 
 impl Problem<'_> {
-    /// The state, from the state of a coarser mesh, else from the pressure `before`, else from the state of the symmetric part of the response: in slow
-    /// motion a set would grow by one row of cells at a time. Where sets come back, springs on the cells, which press independently of each other,
-    /// lead to it: each set that stands changes little under somewhat stiffer springs.
+    /// The state, from the state of a coarser mesh, else from the pressure `before`, else from the state of the
+    /// symmetric part of the response: in slow motion a set would grow by one row of cells at a time. Where sets come
+    /// back, springs on the cells, which press independently of each other, lead to it: each set that stands changes
+    /// little under somewhat stiffer springs.
     pub(super) fn search(&self, bodies: &mut MovingBodies, before: &[f64]) -> Found {
         let coarse = self.on_coarser(bodies, before);
         let first = coarse.as_deref().unwrap_or(before);

@@ -20,13 +20,13 @@ pub(super) struct Support {
 const ARTIFICIAL: f64 = 1e6;
 /// A gap below the plane by less than this part of the range is rounding.
 const ROUNDING: f64 = 1e-12;
-/// From this number of exchanges on the first cell below the plane enters in place of the lowest, which cannot cycle (R. G. Bland,
-/// Math. Oper. Res. 2, 1977); the search ends at the second number.
+/// From this number of exchanges on the first cell below the plane enters in place of the lowest, which cannot cycle
+/// (R. G. Bland, Math. Oper. Res. 2, 1977); the search ends at the second number.
 const EXCHANGES: [usize; 2] = [60, 1000];
 
 impl Problem<'_> {
-    /// The lowest plane ω + α·x below the gap that is highest at the load point, and the cells that it touches: the linear
-    /// program min Σ p h for p ≥ 0 with the force 1 at the load point, by the simplex method.
+    /// The lowest plane ω + α·x below the gap that is highest at the load point, and the cells that it touches: the
+    /// linear program min Σ p h for p ≥ 0 with the force 1 at the load point, by the simplex method.
     pub(super) fn support(&self) -> Support {
         let modes = Modes::new(self.grid, &Rows::all(self.grid.cells()), Freedom { translation: true, ..self.free });
         let finite = || self.gap.iter().enumerate().filter(|(_, height)| height.is_finite());

@@ -23,8 +23,9 @@ impl SlidingSweep {
         SlidingSweep { velocities: velocities.into_iter().collect(), loads: loads.into_iter().collect(), law: None }
     }
 
-    /// At each of these temperatures \[K\]: the material is that at the reference temperature of the law, and passes as many times faster as a_T;
-    /// all its moduli are b_T times as great, if the law has [vertical factors](TimeTemperature::with_vertical_factors).
+    /// At each of these temperatures \[K\]: the material is that at the reference temperature of the law, and passes
+    /// as many times faster as a_T; all its moduli are b_T times as great, if the law has [vertical
+    /// factors](TimeTemperature::with_vertical_factors).
     pub fn at_temperatures(self, law: TimeTemperature, temperatures: impl IntoIterator<Item = f64>) -> SlidingSweep {
         SlidingSweep { law: Some((law, temperatures.into_iter().collect())), ..self }
     }
@@ -70,8 +71,9 @@ impl SteadySliding {
     /// ```
     ///
     /// # Errors
-    /// As [`SteadySliding::at`], [`TimeTemperature::shift_factor`] and [`TimeTemperature::vertical_factor`]; if the law has vertical factors
-    /// and the contact a second body, a base or a bulk, which does not follow it ([`MaterialError::VerticalFactors`]).
+    /// As [`SteadySliding::at`], [`TimeTemperature::shift_factor`] and [`TimeTemperature::vertical_factor`]; if the
+    /// law has vertical factors and the contact a second body, a base or a bulk, which does not follow it
+    /// ([`MaterialError::VerticalFactors`]).
     pub fn sweep(&mut self, sweep: &SlidingSweep) -> Result<SlidingTable> {
         self.sweep_with(sweep, |_, _| ControlFlow::Continue(()))
     }
@@ -79,8 +81,9 @@ impl SteadySliding {
     /// [`SteadySliding::sweep`], calling `progress` after each state with it and the part of the sweep that is done; it may end the sweep early, with the states
     /// found by then.
     ///
-    /// The velocities under one load at one temperature are found one from another, from the state before the sweep on. Several such chains run beside each
-    /// other on as many threads as the pool has (feature `rayon`), each with a contact of its own: states do not depend on the number of threads.
+    /// The velocities under one load at one temperature are found one from another, from the state before the sweep
+    /// on. Several such chains run beside each other on as many threads as the pool has (feature `rayon`), each with
+    /// a contact of its own: states do not depend on the number of threads.
     ///
     /// # Errors
     /// As [`SteadySliding::sweep`].

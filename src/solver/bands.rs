@@ -6,8 +6,8 @@ use crate::parallel::{Rows, cut, fork, lanes};
 use crate::sum::named_sums;
 
 named_sums! {
-    /// Sums and maxima of a pass over the cells in contact under one body, with the modes B of its motion. Each pass computes some
-    /// of them.
+    /// Sums and maxima of a pass over the cells in contact under one body, with the modes B of its motion. Each pass
+    /// computes some of them.
     BandSums {
         /// Σ B r, of the residual r or of the preconditioned residual z.
         residual_modes: modes,

@@ -8,8 +8,8 @@ use crate::quadrature::bisect;
 /// Bisections for the level, far beyond the accuracy that a guess needs.
 const LEVEL_BISECTIONS: usize = 40;
 
-/// Clips a guess to p ≥ 0 on cells that may carry pressure, balances it, and sets the contact to the cells with pressure. Fails
-/// with the body whose load no pressure can balance.
+/// Clips a guess to p ≥ 0 on cells that may carry pressure, balances it, and sets the contact to the cells with
+/// pressure. Fails with the body whose load no pressure can balance.
 pub(crate) fn make_feasible(problem: &Problem<'_>, set: &mut ContactSet, solution: &mut Solution) -> Result<(), usize> {
     for (k, p) in solution.pressure.iter_mut().enumerate() {
         *p = if problem.possible(k) { p.max(0.0) } else { 0.0 };
@@ -48,8 +48,9 @@ pub(crate) fn press_everywhere(problem: &Problem<'_>, body: usize, set: &mut Con
     balance_with_supports(problem, body, set, solution);
 }
 
-/// Balances the pressures in contact. If they have no balance, as under a load so near the rim that next to no cell can carry it, the
-/// cells on which the rigid body would rest are pressed more: they balance the load if any cells do.
+/// Balances the pressures in contact. If they have no balance, as under a load so near the rim that next to no cell
+/// can carry it, the cells on which the rigid body would rest are pressed more: they balance the load if any cells
+/// do.
 fn balance_with_supports(problem: &Problem<'_>, body: usize, set: &ContactSet, solution: &mut Solution) -> bool {
     if balance(problem, body, set, solution) {
         return true;
@@ -94,7 +95,8 @@ fn fill_hertz(problem: &Problem<'_>, body: usize, set: &ContactSet, solution: &m
         let rise = |level: f64| {
             0.375 * PI.sqrt() * problem.compliance * freedom.total * (images * area / cells_below(level)).sqrt()
         };
-        // the rise falls with the level: the balance is unique, and above the highest gap if the load presses the whole face
+        // the rise falls with the level: the balance is unique, and above the highest gap if the load presses the
+        // whole face
         let is_low = |level: f64| level - lowest < rise(level);
         let between = || bisect(lowest, highest, LEVEL_BISECTIONS, is_low)[1];
         (if is_low(highest) { lowest + rise(highest) } else { between() }, 1.0)

@@ -147,8 +147,8 @@ impl ContactSet {
         })
     }
 
-    /// The motion of a body that fits a field best on its cells in contact, from Σ B f over them; zero for modes that they do not
-    /// determine.
+    /// The motion of a body that fits a field best on its cells in contact, from Σ B f over them; zero for modes that
+    /// they do not determine.
     pub(crate) fn fit(&self, problem: &Problem<'_>, body: usize, sums: [f64; 3]) -> ModeCoefficients {
         let (BodyContact { cells, gram, .. }, freedom) = (&self.bodies[body], problem.bodies[body]);
         if freedom.tilts() {
@@ -162,9 +162,10 @@ impl ContactSet {
         Passes { problem, segments: &self.segments, bands }
     }
 
-    /// Finds y such that the pressures max(0, base + weight · B y) on the cells in contact under one body carry the force and moments of
-    /// its load: the minimum of the convex ½ Σ weight (base/weight + B y)₊² − b·y, by Newton's method with step halving. `None` if there
-    /// is none, because the load does not act inside the convex hull of the cells; zero for a body whose motion is given.
+    /// Finds y such that the pressures max(0, base + weight · B y) on the cells in contact under one body carry the
+    /// force and moments of its load: the minimum of the convex ½ Σ weight (base/weight + B y)₊² − b·y, by Newton's
+    /// method with step halving. `None` if there is none, because the load does not act inside the convex hull of the
+    /// cells; zero for a body whose motion is given.
     pub(crate) fn balance(
         &self,
         problem: &Problem<'_>,

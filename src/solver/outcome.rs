@@ -75,8 +75,8 @@ impl ResidualSums {
         ResidualSums { greatest_gap: set.greatest_gap, cells: set.count(), ..ResidualSums::default() }
     }
 
-    /// Writes the relative residual and its rounding to `solution`, and the residual to its trace. `guess_rounding` is the rounding
-    /// of the guess. The step judges convergence and warns of rounding by them.
+    /// Writes the relative residual and its rounding to `solution`, and the residual to its trace. `guess_rounding`
+    /// is the rounding of the guess. The step judges convergence and warns of rounding by them.
     pub(crate) fn note(&mut self, problem: &Problem<'_>, guess_rounding: f64, solution: &mut Solution) {
         self.cancellation = problem.displacement_rounding(&solution.pressure) + guess_rounding;
         // where a rank is lost, the sums are NaN, which ends the iterations
@@ -116,9 +116,9 @@ impl ResidualSums {
         (self.displacement / self.cells.max(1) as f64).sqrt()
     }
 
-    /// The penetration from which cells join the contact: the shallowest cells, on the rim of a growing contact, would mostly
-    /// leave again. A body that penetrates deeper than the surface yields is far from its position: then only the deepest
-    /// cells join.
+    /// The penetration from which cells join the contact: the shallowest cells, on the rim of a growing contact,
+    /// would mostly leave again. A body that penetrates deeper than the surface yields is far from its position: then
+    /// only the deepest cells join.
     pub(crate) fn joining_depth(&self) -> f64 {
         self.penetration * if self.penetration > self.yielding() { 0.5 } else { JOIN_OVER_DEEPEST }
     }

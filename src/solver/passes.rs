@@ -1,7 +1,8 @@
 //! The passes of the solvers over their fields.
 //!
-//! Each pass works on pieces of [`RowSegments`], along which the motion of a body is affine, and does all work that reads the
-//! same fields at once. Sums are taken for each body: Σ B f of its modes B from Σ f and Σ j f of every piece.
+//! Each pass works on pieces of [`RowSegments`], along which the motion of a body is affine, and does all work that
+//! reads the same fields at once. Sums are taken for each body: Σ B f of its modes B from Σ f and Σ j f of every
+//! piece.
 
 use super::{BandSums, Bands, Line, ModeCoefficients, PIECE_CELLS, Piece, Problem, RowSegments, Solution, Solve};
 use crate::sum::{most, sum, sum_of_pairs};
@@ -75,9 +76,9 @@ impl<'a> Passes<'a> {
         bands
     }
 
-    /// p += a d, v += a K d, with r = motion − (c v + gap) on the cells in contact. Sums Σ B r, Σ r², Σ (c v)² and
-    /// Σ min(p, 0)² over them, and takes the greatest r. Over all other cells that may carry pressure it takes the greatest
-    /// motion − (c v + gap).
+    /// p += a d, v += a K d, with r = motion − (c v + gap) on the cells in contact. Sums Σ B r, Σ r², Σ (c v)² and Σ
+    /// min(p, 0)² over them, and takes the greatest r. Over all other cells that may carry pressure it takes the
+    /// greatest motion − (c v + gap).
     pub(crate) fn survey(self, a: f64, search: &Search, solution: &mut Solution) -> &'a [BandSums] {
         let (problem, c) = (self.problem, self.problem.compliance);
         let Solution { motions, pressure, potential, .. } = solution;

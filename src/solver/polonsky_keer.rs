@@ -57,8 +57,8 @@ impl PolonskyKeer {
         }
     }
 
-    /// Sets the free motion of each body to the best fit in contact, and the residual to −h there; returns the sums over it
-    /// and the deepest penetration outside.
+    /// Sets the free motion of each body to the best fit in contact, and the residual to −h there; returns the sums
+    /// over it and the deepest penetration outside.
     fn fit_motions(&mut self, problem: &Problem<'_>, solution: &mut Solution) -> ResidualSums {
         let PolonskyKeer { set, bands, residual, search } = self;
         let mut state = ResidualSums::of(set);
@@ -102,7 +102,8 @@ impl PolonskyKeer {
         1.0 / (problem.compliance * problem.kernel.whole.self_influence())
     }
 
-    /// Advances, clips, presses penetrating cells and restores the balance; returns whether any cell joined the contact.
+    /// Advances, clips, presses penetrating cells and restores the balance; returns whether any cell joined the
+    /// contact.
     fn advance(&mut self, problem: &Problem<'_>, solution: &mut Solution, step: f64) -> bool {
         let mut joined = false;
         for k in 0..problem.gap.len() {
@@ -126,8 +127,8 @@ impl PolonskyKeer {
                     press_everywhere(problem, body, &mut self.set, solution);
                 }
             } else if modes.freedom.tilts() && (!balanced || self.is_unloaded(problem, body, solution)) {
-                // the body is held at its pivot, and touches on one side of it only: it is unloaded, and turned to where its
-                // deepest penetration is least, on both sides of the pivot if it cannot swing clear
+                // the body is held at its pivot, and touches on one side of it only: it is unloaded, and turned to
+                // where its deepest penetration is least, on both sides of the pivot if it cannot swing clear
                 self.set.cells(problem, body).for_each(|k| solution.pressure[k] = 0.0);
                 self.set.press_possible(problem, body);
                 solution.motions[body] = least_penetrating_tilt(problem, body, &self.set);
@@ -144,8 +145,8 @@ impl PolonskyKeer {
     }
 }
 
-/// The tilt at which a body held at its pivot penetrates the undeformed surface least: where it would rest if it could also
-/// move up and down, its load at the pivot. `set` contains all cells that it may touch.
+/// The tilt at which a body held at its pivot penetrates the undeformed surface least: where it would rest if it
+/// could also move up and down, its load at the pivot. `set` contains all cells that it may touch.
 fn least_penetrating_tilt(problem: &Problem<'_>, body: usize, set: &ContactSet) -> ModeCoefficients {
     let free = Freedom { translation: true, total: 1.0, ..problem.bodies[body] };
     let modes = Modes::new(problem.kernel.grid(), problem.rows(), free);

@@ -10,12 +10,12 @@ use crate::kernel::{LocalKernel, SpectralOperator, TransformWorkspace, Workspace
 /// pressure falls to zero at the edge: then the residual continues with the opposite sign. A fifth of that suits both.
 const BEYOND_LAYER: f64 = -0.2;
 
-/// Eᵀ M E ≈ (K on A)⁻¹, with M ≈ K⁻¹, a multiplication in wave space on a grid without padding ([`LocalKernel::inverse`]): for the
-/// half-space a quarter of the size of a convolution.
+/// Eᵀ M E ≈ (K on A)⁻¹, with M ≈ K⁻¹, a multiplication in wave space on a grid without padding
+/// ([`LocalKernel::inverse`]): for the half-space a quarter of the size of a convolution.
 ///
 /// M alone, cut off at the edge of the set A of cells in contact, would be wrong over a strip along the edge, a cell
-/// wide, and the more so the finer the mesh. The [`Extension`] E continues the residual smoothly beyond the edge instead; on
-/// a layer no farther than the layer is thick ([`BEYOND_LAYER`]).
+/// wide, and the more so the finer the mesh. The [`Extension`] E continues the residual smoothly beyond the edge
+/// instead; on a layer no farther than the layer is thick ([`BEYOND_LAYER`]).
 #[derive(Debug, Clone)]
 pub(crate) struct Preconditioner {
     operator: Arc<SpectralOperator>,
@@ -53,7 +53,8 @@ impl Preconditioner {
         self.extension.gather(field, &set.member, ExtensionKind::Attenuated);
     }
 
-    /// field ← Eᵀ field: the values of other cells are moved to the cells of A around them, whose sum becomes the sum over all cells.
+    /// field ← Eᵀ field: the values of other cells are moved to the cells of A around them, whose sum becomes the sum
+    /// over all cells.
     pub(crate) fn gather(&mut self, field: &mut [f64], set: &ContactSet) {
         self.fit(set);
         self.extension.gather(field, &set.member, ExtensionKind::Unbounded);
@@ -78,7 +79,8 @@ impl Preconditioner {
     }
 }
 
-/// Range of the extension of the residual. For wavelengths beyond its thickness a layer on a half-space responds like the half-space.
+/// Range of the extension of the residual. For wavelengths beyond its thickness a layer on a half-space responds like
+/// the half-space.
 fn attenuation(kernel: &LocalKernel) -> Option<Attenuation> {
     let layer = kernel.whole.layer_of()?;
     let remains = BEYOND_LAYER + (1.0 - BEYOND_LAYER) * layer.longest_over_half_space();

@@ -46,8 +46,8 @@ pub(crate) struct Solution {
     pub(crate) residual: f64,
     /// Rounding of the gap, in the same measure: a smaller residual cannot be detected.
     pub(crate) relative_rounding: f64,
-    /// Where surfaces attract each other, an estimate of the least curvature of the energy along any direction, over the curvature of its convex part; 0 where
-    /// none is known.
+    /// Where surfaces attract each other, an estimate of the least curvature of the energy along any direction, over
+    /// the curvature of its convex part; 0 where none is known.
     pub(crate) stiffness: f64,
     /// The residual over the iterations.
     #[cfg_attr(feature = "checkpoint", serde(skip))]
@@ -94,8 +94,8 @@ impl<'a> Problem<'a> {
         Cut { columns: if tilts { self.kernel.grid().cells()[1] } else { usize::MAX }, owner: self.owner }
     }
 
-    /// Rounding of the gap where a prescribed motion closes it, and of c K p on bodies whose mean displacement is held: a
-    /// nearly uniform pressure displaces them hardly at all.
+    /// Rounding of the gap where a prescribed motion closes it, and of c K p on bodies whose mean displacement is
+    /// held: a nearly uniform pressure displaces them hardly at all.
     pub(crate) fn displacement_rounding(&self, pressure: &[f64]) -> f64 {
         let displaced = match self.kernel.whole.softest_wave_if_mean_is_held() {
             Some(softest) => self.compliance * softest * self.rows().greatest(greatest(pressure)),

@@ -20,8 +20,8 @@ pub(crate) struct RestingPosition {
 type Column = ([f64; 3], f64);
 
 impl RestingPosition {
-    /// The position in which a rigid body that is free to tilt rests on as many points of the undeformed surface as it has
-    /// freedoms, with its load between them: the linear programme
+    /// The position in which a rigid body that is free to tilt rests on as many points of the undeformed surface as
+    /// it has freedoms, with its load between them: the linear programme
     ///
     /// minimise Σ gap p   over   p ≥ 0 with force and moments in balance,
     ///

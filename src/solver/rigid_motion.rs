@@ -1,4 +1,5 @@
-//! The rigid motion of a body: the modes that a load leaves free, and the balance of force and moments of each free mode.
+//! The rigid motion of a body: the modes that a load leaves free, and the balance of force and moments of each free
+//! mode.
 
 use crate::parallel::Rows;
 use crate::{Grid, linalg};
@@ -108,7 +109,8 @@ impl<'a> Modes<'a> {
         [if translation { 1.0 } else { 0.0 }, mode(0, k / n2), mode(1, k % n2)]
     }
 
-    /// The free modes along the row of cell `k`, from there on. A body that does not tilt has the mode 1, even if it is held.
+    /// The free modes along the row of cell `k`, from there on. A body that does not tilt has the mode 1, even if it
+    /// is held.
     pub(crate) fn line(&self, k: usize) -> Line {
         if !self.freedom.tilts() {
             return Line::UPRIGHT;

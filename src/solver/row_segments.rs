@@ -8,8 +8,8 @@ const SEARCH_BLOCK: usize = 32;
 /// Cells visited together: their fields remain in the fastest cache.
 pub(crate) const PIECE_CELLS: usize = 256;
 
-/// Cells that follow each other and belong to one body. Where bodies tilt, they lie in one row, along which the motion of
-/// the body is affine.
+/// Cells that follow each other and belong to one body. Where bodies tilt, they lie in one row, along which the
+/// motion of the body is affine.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Piece {
     pub(crate) cells: Range<usize>,

@@ -7,9 +7,9 @@ use crate::kernel::LocalKernel;
 pub(crate) const FLAT_PUNCH_TOLERANCE: f64 = 1e-7;
 const MAX_ITERATIONS: usize = 500;
 
-/// q with K q = `motion` on cells for which `touches` holds and q = 0 elsewhere: the pressure under a rigid motion of a body of unit
-/// compliance, by preconditioned conjugate gradients. If they do not converge, it fails with their number of iterations and the residual
-/// reached.
+/// q with K q = `motion` on cells for which `touches` holds and q = 0 elsewhere: the pressure under a rigid motion of
+/// a body of unit compliance, by preconditioned conjugate gradients. If they do not converge, it fails with their
+/// number of iterations and the residual reached.
 pub(crate) fn flat_punch(
     kernel: &LocalKernel,
     touches: impl Fn(usize) -> bool,

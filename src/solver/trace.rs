@@ -3,8 +3,9 @@
 /// Number of residuals that are stored.
 const MAX_SAMPLES: usize = 32;
 
-/// Residuals over the iterations of one solve, as pairs of an iteration and its residual. When the memory is full, every second
-/// sample is dropped, and from then on half as many are stored: the samples are always spread over the whole solve.
+/// Residuals over the iterations of one solve, as pairs of an iteration and its residual. When the memory is full,
+/// every second sample is dropped, and from then on half as many are stored: the samples are always spread over the
+/// whole solve.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Trace {
     samples: [(u32, f64); MAX_SAMPLES],

@@ -1,8 +1,9 @@
 //! The pressure of a run in space at any time, from elastic contacts beside it.
 //!
-//! The run is repeated on levels, in steps graded towards the time: they cost no contact problem, and the bodies have the same
-//! c(t) and w(l, t). Then a few elastic contacts give the pressure ([`twin`](crate::states::twin)). Under a given approach c(t) depends on the shape: the
-//! curve δ(l) goes through a few elastic contacts at first, and through each that is solved for a field from then on.
+//! The run is repeated on levels, in steps graded towards the time: they cost no contact problem, and the bodies have
+//! the same c(t) and w(l, t). Then a few elastic contacts give the pressure ([`twin`](crate::states::twin)). Under a
+//! given approach c(t) depends on the shape: the curve δ(l) goes through a few elastic contacts at first, and through
+//! each that is solved for a field from then on.
 
 use std::sync::Arc;
 
@@ -30,8 +31,8 @@ const OF_CURVE: f64 = 0.05;
 const OF_STEPS: f64 = 0.1;
 /// Steps on levels twice as long err by so many times more, the order being 2.
 const OF_LONGER: f64 = 3.0;
-/// Bodies that creep by more take elastic contacts of so many times less error, up to the last factor: their errors count as many times in a
-/// difference of two, and in what is left of a given approach.
+/// Bodies that creep by more take elastic contacts of so many times less error, up to the last factor: their errors
+/// count as many times in a difference of two, and in what is left of a given approach.
 const MODERATE: f64 = 10.0;
 const MOST_TIGHTENED: f64 = 1e3;
 /// Fall of a pressure, over the greatest, that is taken for an error of a solver of this tolerance.
@@ -39,8 +40,8 @@ const FALL_OVER_TOLERANCE: f64 = 1e2;
 /// Attempts to find the level on the curve, and most elastic contacts that refine it for one field.
 const MOST_ATTEMPTS: u32 = 12;
 const MOST_REFINED: usize = 64;
-/// The curve is refined between levels that differ by more, in logarithms, and whose slope turns by this part of the greatest turn; its error is
-/// the error of a curve through every second contact over this, as at kinks.
+/// The curve is refined between levels that differ by more, in logarithms, and whose slope turns by this part of the
+/// greatest turn; its error is the error of a curve through every second contact over this, as at kinks.
 const FINEST: f64 = 2e-3;
 const OF_GREATEST_TURN: f64 = 0.25;
 const OF_SECOND: f64 = 3.0;
@@ -50,7 +51,8 @@ const OF_KINK: f64 = 8.0;
 const OF_LEVEL: f64 = 2.0;
 /// Levels of the curve beyond its last one, over that.
 const BEYOND: f64 = 16.0;
-/// Half of the levels err by so much more, the order being 3/2; twins, whose rims no mesh blurs, by so many times too much at most.
+/// Half of the levels err by so much more, the order being 3/2; twins, whose rims no mesh blurs, by so many times too
+/// much at most.
 const OF_HALF: f64 = 1.83;
 const MOST_OVERSTATED: f64 = 3.0;
 
@@ -81,9 +83,10 @@ pub(crate) struct FoundPressure {
 }
 
 impl Beside {
-    /// For a run from undisturbed bodies at a `start`, with steps of this kind; `None` where levels give no field: tilts change, or are free
-    /// under a given approach, the material has no series, or nothing presses. [`StatesError::Shrinks`](crate::states::StatesError::Shrinks) where an elastic contact
-    /// shrinks as its load grows.
+    /// For a run from undisturbed bodies at a `start`, with steps of this kind; `None` where levels give no field:
+    /// tilts change, or are free under a given approach, the material has no series, or nothing presses.
+    /// [`StatesError::Shrinks`](crate::states::StatesError::Shrinks) where an elastic contact shrinks as its load
+    /// grows.
     pub(crate) fn new(
         contact: &ViscoelasticContact,
         course: &Loading<'_>,
@@ -193,7 +196,8 @@ impl Beside {
         self.repeated.on(self.curve_through(rows)?).at(history, time, after)
     }
 
-    /// The width in logarithms of the interval above each elastic contact of the curve, and the depth by which the slope turns there.
+    /// The width in logarithms of the interval above each elastic contact of the curve, and the depth by which the
+    /// slope turns there.
     fn turns(&self) -> Vec<(f64, f64)> {
         let width = |k: usize| (self.rows[k + 1][0] / self.rows[k][0]).ln();
         let slope = |k: usize| (self.rows[k + 1][1] / self.rows[k][1]).ln() / width(k);
@@ -205,7 +209,8 @@ impl Beside {
         (0..=last).map(turn).collect()
     }
 
-    /// Adds elastic contacts in the middle of others where the slope of the curve changes most: where cells join. Returns their number.
+    /// Adds elastic contacts in the middle of others where the slope of the curve changes most: where cells join.
+    /// Returns their number.
     fn refine(&mut self) -> Result<usize> {
         let turns = self.turns();
         let is_wide = |k: &usize| turns[*k].0 > FINEST;
@@ -217,7 +222,8 @@ impl Beside {
         Ok(middles.len())
     }
 
-    /// Errors of the pressure for the error of the level on the curve, and for its change since `before`; and the run on the curve as it is now.
+    /// Errors of the pressure for the error of the level on the curve, and for its change since `before`; and the run
+    /// on the curve as it is now.
     fn error_of_level(&self, before: &Found, history: &dyn LoadHistory, at: (f64, bool)) -> Result<([f64; 2], Found)> {
         let last = self.rows.len() - 1;
         let is_second = |k: usize, row: usize| (row + k).is_multiple_of(2) || row == 0 || row == last;

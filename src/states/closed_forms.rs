@@ -20,9 +20,10 @@ fn size(field: &'static str, value: f64) -> Result<f64> {
 /// A power of a size: coefficient and exponent.
 type Power = (f64, f64);
 
-/// Upright axisymmetric bodies on a half-space: exact at every level, in any units. The contact may grow until a number
-/// of it exceeds 10¹⁰⁰. The superposition is then the method of dimensionality reduction (Popov & Heß, *Method of Dimensionality Reduction in
-/// Contact Mechanics and Friction*, 2015; for creeping bodies Ting 1968, Greenwood, Int. J. Mech. Sci. 52, 2010).
+/// Upright axisymmetric bodies on a half-space: exact at every level, in any units. The contact may grow until a
+/// number of it exceeds 10¹⁰⁰. The superposition is then the method of dimensionality reduction (Popov & Heß, *Method
+/// of Dimensionality Reduction in Contact Mechanics and Friction*, 2015; for creeping bodies Ting 1968, Greenwood,
+/// Int. J. Mech. Sci. 52, 2010).
 impl ElasticStates {
     /// A sphere of `radius` R \[m\] as a paraboloid r²/2R (Hertz): δ = a²/R, l = 4/3 a³/R.
     ///
@@ -69,7 +70,8 @@ impl ElasticStates {
     /// κ = √π Γ(n/2 + 1)/Γ((n + 1)/2), l = 2n/(n + 1) δ a.
     ///
     /// # Errors
-    /// If the coefficient is not finite and positive, or levels are no numbers; if the exponent is outside \[0.1, 100\].
+    /// If the coefficient is not finite and positive, or levels are no numbers; if the exponent is outside \[0.1,
+    /// 100\].
     pub fn power(coefficient: f64, exponent: f64) -> Result<Arc<ElasticStates>> {
         positive("coefficient of the shape c r^n", coefficient)?;
         let n = within("exponent of the shape c r^n", exponent, (0.1..=100.0).contains(&exponent), "in [0.1, 100]")?;
@@ -77,8 +79,8 @@ impl ElasticStates {
         ElasticStates::of_powers([(2.0 * n / (n + 1.0) * depth, n + 1.0), (depth, n), (2.0, 1.0), (PI, 2.0)])
     }
 
-    /// Level, approach, stiffness and area as powers of one size. Two states give the powers between them and below: the size 1, or less
-    /// where a number is great there, and the size at which the first number is [`GREATEST`].
+    /// Level, approach, stiffness and area as powers of one size. Two states give the powers between them and below:
+    /// the size 1, or less where a number is great there, and the size at which the first number is [`GREATEST`].
     fn of_powers(powers: [Power; 4]) -> Result<Arc<ElasticStates>> {
         let greatest = |(coefficient, exponent): Power| (GREATEST.ln() - coefficient.ln()) / exponent;
         let last = powers.into_iter().map(greatest).fold(f64::INFINITY, f64::min);

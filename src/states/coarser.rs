@@ -32,7 +32,8 @@ impl Coarser {
         Coarser { contact, interpolant, times: times.to_vec(), in_halves, force: 0.0 }
     }
 
-    /// Takes the step of the run from `start` on, together with the one before, unless that ended at a corner, a jump or a field.
+    /// Takes the step of the run from `start` on, together with the one before, unless that ended at a corner, a jump
+    /// or a field.
     pub(super) fn follow(&mut self, run: &ViscoelasticContact, history: &dyn LoadHistory, start: f64) {
         self.force = self.force.max(run.force());
         let Some(contact) = &mut self.contact else { return };

@@ -17,9 +17,9 @@ use crate::states::levels::{Demand, Levels, Wanted};
 /// A contact of one material on the [`ElasticStates`] of its surface, advanced step by step like a
 /// [`ViscoelasticContact`](crate::ViscoelasticContact), by the same time rule.
 ///
-/// A step costs about N (N_τ + 3) multiplications for N groups of levels and N_τ relaxation times: 7 ns for each group of one. Every
-/// step adds a group at most; groups merge within an error ([`StatesContact::with_merge_error`]), so that N stays below about
-/// 2.5/√error. A step allocates nothing unless there are more groups than ever before.
+/// A step costs about N (N_τ + 3) multiplications for N groups of levels and N_τ relaxation times: 7 ns for each
+/// group of one. Every step adds a group at most; groups merge within an error ([`StatesContact::with_merge_error`]),
+/// so that N stays below about 2.5/√error. A step allocates nothing unless there are more groups than ever before.
 #[derive(Clone)]
 pub struct StatesContact {
     pub(super) scene: Arc<Scene>,
@@ -89,7 +89,8 @@ impl StatesContact {
         self
     }
 
-    /// With steps that are linear and stay so, as [`TimeRule::ExponentialLinear`](crate::contact::TimeRule::ExponentialLinear).
+    /// With steps that are linear and stay so, as
+    /// [`TimeRule::ExponentialLinear`](crate::contact::TimeRule::ExponentialLinear).
     #[must_use]
     pub fn with_linear_steps(self) -> StatesContact {
         self.with_interpolant(Interpolant::Linear)
@@ -136,10 +137,12 @@ impl StatesContact {
         Ok(self)
     }
 
-    /// With the elastic state of every step solved exactly, by one elastic contact problem that starts from the last one, and added to the states
-    /// of this contact. Steps then agree with those of a [`ViscoelasticContact`](crate::ViscoelasticContact) to the tolerance of the solver, also
-    /// under a given approach, in area to the cell. Without it, the approach and the level under a given approach err by the interpolation of the
-    /// sweep; the level under a given force does not err. Such a step allocates the state that it adds.
+    /// With the elastic state of every step solved exactly, by one elastic contact problem that starts from the last
+    /// one, and added to the states of this contact. Steps then agree with those of a
+    /// [`ViscoelasticContact`](crate::ViscoelasticContact) to the tolerance of the solver, also under a given
+    /// approach, in area to the cell. Without it, the approach and the level under a given approach err by the
+    /// interpolation of the sweep; the level under a given force does not err. Such a step allocates the state that
+    /// it adds.
     ///
     /// # Errors
     /// [`StatesError::NoScene`] if the states were read from a file or given as a table; those of
@@ -150,13 +153,14 @@ impl StatesContact {
         Ok(self)
     }
 
-    /// Advances by `dt` \[s\] to a load; `dt` = 0 is a jump. A body without elastic response cannot follow jumps but to its present load and a
-    /// release. A body that tilts freely under no force rests in the limit of small forces.
+    /// Advances by `dt` \[s\] to a load; `dt` = 0 is a jump. A body without elastic response cannot follow jumps but
+    /// to its present load and a release. A body that tilts freely under no force rests in the limit of small forces.
     ///
     /// # Errors
-    /// If `dt` is negative or not finite, or the load invalid; [`StatesError`] if the load has other tilts or another load point than the sweep,
-    /// needs a state beyond it, or a group of levels leaves its order; if `dt` = 0 and the body has no elastic response, or the time under load
-    /// is beyond the material's. A step that fails changes nothing but, with exact states, the states between which it interpolates.
+    /// If `dt` is negative or not finite, or the load invalid; [`StatesError`] if the load has other tilts or another
+    /// load point than the sweep, needs a state beyond it, or a group of levels leaves its order; if `dt` = 0 and the
+    /// body has no elastic response, or the time under load is beyond the material's. A step that fails changes
+    /// nothing but, with exact states, the states between which it interpolates.
     pub fn step(&mut self, dt: f64, load: Load) -> Result<StepReport> {
         self.step_to(self.time + dt, dt, load)
     }
@@ -365,13 +369,15 @@ impl StatesContact {
         self.levels.level == 0.0
     }
 
-    /// Stiffness over the contact modulus \[m\], see [`ElasticState::stiffness`](crate::states::ElasticState::stiffness).
+    /// Stiffness over the contact modulus \[m\], see
+    /// [`ElasticState::stiffness`](crate::states::ElasticState::stiffness).
     pub fn stiffness_over_modulus(&self) -> f64 {
         self.states.stiffness(self.levels.level)
     }
 
-    /// A quantity of the pressure, as its value in a cell, by the one of the elastic contact of unit compliance, q(l): Σ w_i
-    /// (q(l_i) − q(l_i−1)), with the levels and tractions of [`StatesContact::tractions`], and q = 0 at the level 0.
+    /// A quantity of the pressure, as its value in a cell, by the one of the elastic contact of unit compliance,
+    /// q(l): Σ w_i (q(l_i) − q(l_i−1)), with the levels and tractions of [`StatesContact::tractions`], and q = 0 at
+    /// the level 0.
     pub fn superposed(&self, elastic: impl Fn(f64) -> f64) -> f64 {
         let mut below = 0.0;
         let part = |(level, traction)| {

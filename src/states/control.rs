@@ -1,8 +1,9 @@
 //! Length of the adaptive steps of a run on elastic states.
 //!
-//! A step is taken whole and in two halves, and the halves are kept. Their difference at the end is not enough: a body that parts and
-//! touches within the step, or a surface that recovers while nothing presses on it, does not show there. So the control looks at the load
-//! within the step, ends steps where bodies touch and forces begin or end, and compares the free surface and the strains of all levels.
+//! A step is taken whole and in two halves, and the halves are kept. Their difference at the end is not enough: a
+//! body that parts and touches within the step, or a surface that recovers while nothing presses on it, does not show
+//! there. So the control looks at the load within the step, ends steps where bodies touch and forces begin or end,
+//! and compares the free surface and the strains of all levels.
 
 use crate::contact::StepReport;
 use crate::error::{Result, StepError};
@@ -20,7 +21,8 @@ const FIRST_STEP: f64 = 1e-4;
 const RELAXED: f64 = 2.0;
 /// Rounding of times: no step is shorter than this part of the time.
 const SHORTEST: f64 = 8.0 * f64::EPSILON;
-/// Within so many of the shortest steps after a jump or a corner, the creep may be faster than times are resolved: such a step is accepted.
+/// Within so many of the shortest steps after a jump or a corner, the creep may be faster than times are resolved:
+/// such a step is accepted.
 const LATE: f64 = 64.0;
 /// Limits of the ratio of a step to the one before.
 const MAX_GROWTH: f64 = 4.0;
@@ -34,14 +36,15 @@ const AIM_OF_RATES: f64 = 0.25;
 const ALLOWED: f64 = 3.0;
 /// Order of a corrected step, by which its length is chosen.
 const ORDER: f64 = 3.0;
-/// Two halves err by a third of their difference to the whole, as where the order is two: the curve between states has kinks in its
-/// curvature.
+/// Two halves err by a third of their difference to the whole, as where the order is two: the curve between states
+/// has kinks in its curvature.
 const OF_HALVES: f64 = 1.0 / 3.0;
 /// Where there is no order, in a first step, the one after bodies touched and one in which they part,
 /// halves may be no better than the whole.
 const WITHOUT_ORDER: f64 = 2.0;
-/// Levels that were swept in a step are resolved by its length alone: their error does not add up over the steps, but over the taps that
-/// come back to them, and counts so much, chosen on 300 random runs that tap and part; less where forces are given throughout.
+/// Levels that were swept in a step are resolved by its length alone: their error does not add up over the steps, but
+/// over the taps that come back to them, and counts so much, chosen on 300 random runs that tap and part; less where
+/// forces are given throughout.
 const SWEPT: f64 = 0.2;
 const SWEPT_BY_FORCE: f64 = 0.05;
 /// Number of equal parts of a run at which the load is looked at.
@@ -52,7 +55,8 @@ const BEND: f64 = 0.03;
 const OVERSHOOT: f64 = 0.01;
 /// Contacts that get smaller than this part of the greatest level within a step are looked at inside its halves too.
 const SHALLOW: f64 = 0.3;
-/// Depth and force are not small, for errors relative to them, from this part of what the greatest load of the run will make of them.
+/// Depth and force are not small, for errors relative to them, from this part of what the greatest load of the run
+/// will make of them.
 const EXPECTED: f64 = 0.1;
 /// Depths and forces below this part of their maximum count as if they were as large.
 const SMALL: f64 = 0.1;
@@ -141,7 +145,8 @@ impl Record {
             && times.chain([self.next, self.corner]).all(f64::is_finite)
     }
 
-    /// Looks at the load at equal parts of the run, which fails where there is none. A load that the states have no demand for fails the step to it.
+    /// Looks at the load at equal parts of the run, which fails where there is none. A load that the states have no
+    /// demand for fails the step to it.
     fn sample(&mut self, contact: &StatesContact, history: &dyn LoadHistory) -> Result<()> {
         let (start, length) = (contact.time(), self.until - contact.time());
         let mut presses = false;
@@ -292,8 +297,8 @@ impl StatesControl {
         )
     }
 
-    /// Takes a step whole and in two halves. Returns how far the whole differs from the halves, in depth and force, relative to values that
-    /// are not small in this run.
+    /// Takes a step whole and in two halves. Returns how far the whole differs from the halves, in depth and force,
+    /// relative to values that are not small in this run.
     fn compare(
         &mut self,
         contact: &StatesContact,
@@ -347,8 +352,8 @@ impl StatesControl {
         if whole.level() > 0.0 || halves.level() > 0.0 {
             see([0, 1].map(|k| ended[0][k] - ended[1][k]), scales);
         }
-        // what steps like this one add since the last corner, and nothing brings back, may be as large as the tolerance: to the depth
-        // under a spring, and to the surface of bodies apart that resist rates alone
+        // what steps like this one add since the last corner, and nothing brings back, may be as large as the
+        // tolerance: to the depth under a spring, and to the surface of bodies apart that resist rates alone
         let acts = halves.level() > 0.0;
         let (time, off) = if acts { (loaded, ended[0][0] - ended[1][0]) } else { (until, of_surface[0]) };
         let by_spring = matches!(demand, Demand::Depth { give, .. } if give > 0.0);

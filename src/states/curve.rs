@@ -32,7 +32,8 @@ pub struct ElasticState {
     /// Stiffness over the contact modulus, dl/dy for a motion of the body without tilt \[m\]: 2a for a circle of
     /// radius a. Infinite on periodic bodies in full contact.
     pub stiffness: f64,
-    /// dl/dδ of the load point, about which the body tilts where its tilt is free \[m\]: the stiffness of an upright body.
+    /// dl/dδ of the load point, about which the body tilts where its tilt is free \[m\]: the stiffness of an upright
+    /// body.
     pub load_stiffness: f64,
     /// Growth of the tilts with the level \[rad/m²\].
     pub tilt_rate: [f64; 2],
@@ -202,8 +203,8 @@ impl ElasticStates {
         state.motion().at(self.load_point()) - self.rest.approach
     }
 
-    /// A contact that only grows has 0 < dln δ/dln l ≤ 1. Slopes are limited to three times the slopes of the chords beside them, so that
-    /// cubics rise (Fritsch & Carlson 1980) whatever a table holds.
+    /// A contact that only grows has 0 < dln δ/dln l ≤ 1. Slopes are limited to three times the slopes of the chords
+    /// beside them, so that cubics rise (Fritsch & Carlson 1980) whatever a table holds.
     fn nodes(&self) -> Vec<Node> {
         let node = |state: &ElasticState| {
             let depth = self.depth_of(state);
@@ -250,10 +251,11 @@ impl ElasticStates {
         hermite([a.depth, b.depth], [a.slope, b.slope].map(|slope| slope * (b.level - a.level)), s).exp()
     }
 
-    /// Error of the interpolation at a state in the middle, in ln l, of two others, relative to the depth: of the depth, of what the
-    /// tilts lift at the edge of the contact and at the origin, or of what the slopes contribute. Each cell that joins is a kink of δ(l),
-    /// and slopes scatter by as much; depths may then agree in the middle alone. So each slope is compared with the slope of the parabola
-    /// through the three depths. A cubic over half of the interval errs by 4/27 of its length times the error of a slope.
+    /// Error of the interpolation at a state in the middle, in ln l, of two others, relative to the depth: of the
+    /// depth, of what the tilts lift at the edge of the contact and at the origin, or of what the slopes contribute.
+    /// Each cell that joins is a kink of δ(l), and slopes scatter by as much; depths may then agree in the middle
+    /// alone. So each slope is compared with the slope of the parabola through the three depths. A cubic over half of
+    /// the interval errs by 4/27 of its length times the error of a slope.
     pub(super) fn error_at(&self, state: &ElasticState) -> f64 {
         let (level, depth) = (state.level.ln(), self.depth_of(state));
         let (found, at) = (self.motions(state.level), self.load_point());
@@ -271,8 +273,9 @@ impl ElasticStates {
         value.max(2.0 / 27.0 * scatter.sum::<f64>())
     }
 
-    /// The level l with δ(l) + `give` l = `sum` \[m\]: 0 where the sum is not positive, infinite beyond the last state, NaN if numbers
-    /// overflow. Logarithms of sums of powers are nearly linear in ln l, over any number of decades.
+    /// The level l with δ(l) + `give` l = `sum` \[m\]: 0 where the sum is not positive, infinite beyond the last
+    /// state, NaN if numbers overflow. Logarithms of sums of powers are nearly linear in ln l, over any number of
+    /// decades.
     pub(super) fn level_where(&self, give: f64, sum: f64) -> f64 {
         let Some((first, last)) = self.nodes.first().zip(self.nodes.last()).filter(|_| sum > 0.0) else { return 0.0 };
         let [sum, give, half] = [sum, give, 0.5 * sum].map(f64::ln);
@@ -307,8 +310,8 @@ impl ElasticStates {
         (a.level + root([0.0, 1.0], 1.0, ROUNDING, at) * length).exp()
     }
 
-    /// A quantity of the states that is a power of the level between two of them; below the first one, it falls as the power
-    /// `of_radius` of the contact radius does where the depth is a power of the radius.
+    /// A quantity of the states that is a power of the level between two of them; below the first one, it falls as
+    /// the power `of_radius` of the contact radius does where the depth is a power of the radius.
     fn power_law(&self, level: f64, of: impl Fn(&ElasticState) -> f64, of_radius: f64) -> f64 {
         let Some(first) = self.nodes.first().filter(|_| level > 0.0) else { return 0.0 };
         let level = level.ln();

@@ -30,7 +30,8 @@ pub(super) fn state_under(contact: &mut ElasticContact, load: Load) -> Result<So
         area: fields.contact_area(),
         cells: fields.contact_cells(),
         patches: fields.patches()?.all.len(),
-        // warnings of its own modulus and solver do not apply to the contacts that are made of it, those of its shape do
+        // warnings of its own modulus and solver do not apply to the contacts that are made of it, those of its shape
+        // do
         warnings: (report.warnings - Warnings::MODULUS - Warnings::FALL_BACK - Warnings::ROUNDING)
             | Warnings::of(&[(Warnings::ROUNDING, rounded)]),
         figures: Figures { modulus: None, ..report.figures },

@@ -30,15 +30,17 @@ impl StatesContact {
         Ok(field)
     }
 
-    /// All fields to an `accuracy`, the error of the pressure in L1 over the force: from elastic contacts at a few levels, chosen
-    /// by what the same levels leave of the error on a ball and on a cone, from the smallest to the largest. Measured over random scenes, they
-    /// are 7 contacts for 1e-2 and 20 for 1e-3 in the median, each some 5 convolutions from the one before, and five fields of memory. The
-    /// L2 error is about twice as large, relative to the field, and the error of the greatest pressure five times. An accuracy of 0 takes
-    /// every group of levels. The steps that were taken count as exact: a run has
+    /// All fields to an `accuracy`, the error of the pressure in L1 over the force: from elastic contacts at a few
+    /// levels, chosen by what the same levels leave of the error on a ball and on a cone, from the smallest to the
+    /// largest. Measured over random scenes, they are 7 contacts for 1e-2 and 20 for 1e-3 in the median, each some 5
+    /// convolutions from the one before, and five fields of memory. The L2 error is about twice as large, relative to
+    /// the field, and the error of the greatest pressure five times. An accuracy of 0 takes every group of levels.
+    /// The steps that were taken count as exact: a run has
     /// [`Run::fields_to`](crate::run::Run::fields_to).
     ///
     /// # Errors
-    /// If the accuracy is outside \[0, 0.1\]; [`StatesError::NoScene`] if the states were read from a file or given as a table; as
+    /// If the accuracy is outside \[0, 0.1\]; [`StatesError::NoScene`] if the states were read from a file or given
+    /// as a table; as
     /// [`ElasticContact::solve`](crate::elastic::ElasticContact::solve).
     pub fn fields(&self, accuracy: f64) -> Result<KeptFields> {
         within("accuracy of the fields", accuracy, (0.0..=0.1).contains(&accuracy), "in [0, 0.1]")?;

@@ -10,8 +10,8 @@ use crate::states::curve::ElasticStates;
 const LEAST_FLAT: f64 = 101.0;
 
 impl ElasticStates {
-    /// What is outside the model in a contact of this level and `depth`: as at [`ElasticStates::state_at`], where a body without cells has the
-    /// slope of the shape c rⁿ at the edge of its contact, n δ/(κ a).
+    /// What is outside the model in a contact of this level and `depth`: as at [`ElasticStates::state_at`], where a
+    /// body without cells has the slope of the shape c rⁿ at the edge of its contact, n δ/(κ a).
     pub(super) fn outside(&self, level: f64, depth: f64) -> (Warnings, Figures) {
         let Some(state) = self.state_at(level) else { return Default::default() };
         let (mut warnings, mut figures) = (state.warnings, state.figures);

@@ -23,8 +23,8 @@ impl Pressed {
         self.cells == other.cells
     }
 
-    /// Nowhere may the pressure fall from here to `after`, while the load grows from the first level to the second, by more than this share
-    /// of the greatest.
+    /// Nowhere may the pressure fall from here to `after`, while the load grows from the first level to the second,
+    /// by more than this share of the greatest.
     pub(crate) fn check_growth(&self, after: &Pressed, levels: [f64; 2], allowed: f64) -> Result<()> {
         let (fall, allowed) = (self.greatest_fall_to(after), allowed.max(ALLOWED_FALL));
         if fall > allowed { Err(StatesError::Shrinks { levels, fall, allowed }.into()) } else { Ok(()) }

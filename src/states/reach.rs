@@ -16,7 +16,8 @@ const PARTS: u32 = 4096;
 /// Number of even parts of a run at whose ends its level is sampled, and the tolerance of its steps.
 const LEVELS: u32 = 1024;
 const TOLERANCE: f64 = 1e-4;
-/// Factor by which a sweep goes beyond the level that a run is found to need: the load may be greater between two samples, and steps err.
+/// Factor by which a sweep goes beyond the level that a run is found to need: the load may be greater between two
+/// samples, and steps err.
 pub(super) const MARGIN: f64 = 1.05;
 
 /// How far a sweep goes.
@@ -24,22 +25,25 @@ pub(super) const MARGIN: f64 = 1.05;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Reach {
-    /// To a level \[m²\]: force times compliance. A force F held on a body of the contact creep compliance C(t) reaches F C(t).
+    /// To a level \[m²\]: force times compliance. A force F held on a body of the contact creep compliance C(t)
+    /// reaches F C(t).
     Level(f64),
     /// To an approach of the load point \[m\].
     Approach(f64),
-    /// To the largest contact of an elastic body of unit compliance under one of these loads, and 5 % of the level beyond: a force is a
-    /// level \[m²\], and the stiffness of a spring is given over the contact modulus \[m\]. The loads have the tilts of the sweep.
+    /// To the largest contact of an elastic body of unit compliance under one of these loads, and 5 % of the level
+    /// beyond: a force is a level \[m²\], and the stiffness of a spring is given over the contact modulus \[m\]. The
+    /// loads have the tilts of the sweep.
     Loads(Vec<Load>),
 }
 
 impl Reach {
     /// What a run of this material along a load history to the time `until` \[s\] needs.
     ///
-    /// Under forces that is the greatest level of the run, which does not depend on the shape, and under approaches the greatest approach.
-    /// Springs, and histories of several kinds of load, take the greatest load of each kind on an elastic body of the last contact
-    /// compliance. A spring, or a force among other loads, may need more than that; a step beyond the sweep is refused then. Loads are
-    /// sampled at 4097 even times and at both sides of all corners.
+    /// Under forces that is the greatest level of the run, which does not depend on the shape, and under approaches
+    /// the greatest approach. Springs, and histories of several kinds of load, take the greatest load of each kind on
+    /// an elastic body of the last contact compliance. A spring, or a force among other loads, may need more than
+    /// that; a step beyond the sweep is refused then. Loads are sampled at 4097 even times and at both sides of all
+    /// corners.
     ///
     /// ```
     /// use viscocontact::prelude::*;
@@ -127,7 +131,8 @@ impl Loading<'_> {
         })
     }
 
-    /// The greatest level at the ends of the steps and of so many even parts of a run under given forces; it does not depend on the shape.
+    /// The greatest level at the ends of the steps and of so many even parts of a run under given forces; it does not
+    /// depend on the shape.
     pub(crate) fn greatest_level(&self, tilt: [Tilt; 2], interpolant: Interpolant, parts: u32) -> Result<f64> {
         let mut states = ElasticStates::sphere(1.0)?;
         Arc::make_mut(&mut states).tilt = tilt;

@@ -13,7 +13,8 @@ use crate::states::twin::Profile;
 
 /// Tolerance of the steps that show how long steps of a run may be.
 const COARSE: f64 = 1e-3;
-/// Number of its own steps in each of these. Under a given approach its steps are shorter: a small force may be what is left of large ones.
+/// Number of its own steps in each of these. Under a given approach its steps are shorter: a small force may be what
+/// is left of large ones.
 const PARTS_OF_STEP: usize = 8;
 const PARTS_BY_APPROACH: usize = 32;
 /// Greatest number of its own steps, and the most to be halved for a field.

@@ -18,8 +18,9 @@ use crate::states::control::{Record, StatesControl, load_at};
 #[cfg(feature = "checkpoint")]
 use crate::states::saved::SavedRun;
 
-/// A [`Run`] of a [`StatesContact`], made by [`StatesContact::follow`]. Adaptive steps are taken whole and in two halves, and the halves
-/// are kept. The error of the step is the difference of both, in depth and force and in what the surfaces can ever add to them.
+/// A [`Run`] of a [`StatesContact`], made by [`StatesContact::follow`]. Adaptive steps are taken whole and in two
+/// halves, and the halves are kept. The error of the step is the difference of both, in depth and force and in what
+/// the surfaces can ever add to them.
 ///
 /// ```
 /// use viscocontact::prelude::*;

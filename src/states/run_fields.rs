@@ -17,11 +17,12 @@ use crate::states::reach::Loading;
 use crate::states::repeated::Repeated;
 use crate::states::unless_refused;
 
-/// An error of the force counts in a field as many times as the bodies creep under a given force, up to so much: adaptive steps have this tolerance
-/// over the creep, as a part of the accuracy of the field.
+/// An error of the force counts in a field as many times as the bodies creep under a given force, up to so much:
+/// adaptive steps have this tolerance over the creep, as a part of the accuracy of the field.
 const OF_CREEP: f64 = 1.5;
 const MOST_CREEP: f64 = 15.0;
-/// Number and ratio of the graded steps before a field where levels do not give it, and the share of the tolerance of all steps.
+/// Number and ratio of the graded steps before a field where levels do not give it, and the share of the tolerance of
+/// all steps.
 const GRADED: (i32, f64, f64) = (12, 0.7, 1.0);
 /// The same where an elastic contact shrinks as its load grows: parts of the surface open while others are pressed.
 const GRADED_OF_SHRINKING: (i32, f64, f64) = (24, 0.84, 0.25);
@@ -39,14 +40,16 @@ enum InSpace {
 }
 
 impl<'a> Run<'a> {
-    /// Makes the pressure at the times to sample ([`Run::sample_at`]) exact to `accuracy`: the error in time is Σ |δp| over Σ p, or over a
-    /// hundredth of the greatest force so far if that is more. 99 % of random fields of bodies that creep up to 100-fold are below the
-    /// accuracy; up to 1000-fold the greatest error is 1.6 times as much. [`Stepping::adaptive`](crate::run::Stepping::adaptive) promises approach and force
-    /// alone: cells that joined in the last long step have the pressure of one moment, which is off by 1 to 30 %.
+    /// Makes the pressure at the times to sample ([`Run::sample_at`]) exact to `accuracy`: the error in time is Σ
+    /// |δp| over Σ p, or over a hundredth of the greatest force so far if that is more. 99 % of random fields of
+    /// bodies that creep up to 100-fold are below the accuracy; up to 1000-fold the greatest error is 1.6 times as
+    /// much. [`Stepping::adaptive`](crate::run::Stepping::adaptive) promises approach and force alone: cells that
+    /// joined in the last long step have the pressure of one moment, which is off by 1 to 30 %.
     ///
-    /// Where the contact is a superposition of its elastic states ([`states`](crate::states)) the steps stay as they are, bitwise. A few
-    /// elastic contacts beside the run give the pressure of [`Sample::fields`](crate::run::Sample::fields) and [`Run::fields_within_step`] at any
-    /// time: 6 for 1e-2 and 13 for 1e-3 in the median, 13 and 44 for a tenth of the fields. Displacement and motions stay as in the run.
+    /// Where the contact is a superposition of its elastic states ([`states`](crate::states)) the steps stay as they
+    /// are, bitwise. A few elastic contacts beside the run give the pressure of
+    /// [`Sample::fields`](crate::run::Sample::fields) and [`Run::fields_within_step`] at any time: 6 for 1e-2 and 13
+    /// for 1e-3 in the median, 13 and 44 for a tenth of the fields. Displacement and motions stay as in the run.
     ///
     /// Where load points or tilts change, where bodies are several, attract each other or are
     /// shared out by ranks, and where they were disturbed before the run begins, 12 steps graded by
@@ -61,8 +64,8 @@ impl<'a> Run<'a> {
     /// has failed.
     ///
     /// [`Sample::field`](crate::run::Sample::field) has the estimated error. Relative to the field the L2 error is about twice as large, and
-    /// the error of the greatest pressure five times.
-    /// At a jump of the load both the step that ends there and the jump have a sample: the field before it, and the field after it.
+    /// the error of the greatest pressure five times. At a jump of the load both the step that ends there and the
+    /// jump have a sample: the field before it, and the field after it.
     ///
     /// ```
     /// use viscocontact::prelude::*;
@@ -93,7 +96,8 @@ impl<'a> Run<'a> {
 }
 
 impl<'a> Run<'a, StatesContact> {
-    /// As [`Run::fields_to`] in space: [`Sample::contact`](crate::run::Sample::contact) is then a contact of fine steps of its own, whose
+    /// As [`Run::fields_to`] in space: [`Sample::contact`](crate::run::Sample::contact) is then a contact of fine
+    /// steps of its own, whose
     /// [`StatesContact::fields`] have the accuracy.
     ///
     /// # Errors

@@ -41,8 +41,8 @@ const KIND: &str = "elastic states";
 
 impl StatesContact {
     /// Saves the whole state to a file, from which a contact of the same states, material and time rule continues
-    /// ([`StatesContact::resume`]) by the same steps, bitwise, with exact states to the tolerance of the solver. The file is complete when this returns; until then,
-    /// what was there before is not touched.
+    /// ([`StatesContact::resume`]) by the same steps, bitwise, with exact states to the tolerance of the solver. The
+    /// file is complete when this returns; until then, what was there before is not touched.
     ///
     /// Needs the feature `checkpoint`.
     ///
@@ -65,8 +65,9 @@ impl StatesContact {
         })
     }
 
-    /// Puts a saved state in the place of this one. The contact must be made of the same states and material, with the same time rule
-    /// and temperature. A run that saved it ([`Run::autosave_to`](crate::run::Run::autosave_to)) goes on with the next
+    /// Puts a saved state in the place of this one. The contact must be made of the same states and material, with
+    /// the same time rule and temperature. A run that saved it ([`Run::autosave_to`](crate::run::Run::autosave_to))
+    /// goes on with the next
     /// [`StatesContact::follow`] of the same stepping, by the same steps.
     ///
     /// Needs the feature `checkpoint`.

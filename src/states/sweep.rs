@@ -78,9 +78,9 @@ impl Sweep {
         self
     }
 
-    /// Error of the depth δ between two states, relative to √(δ δ_last), with δ_last the greatest depth (default: 1e-4). Where
-    /// [pressures are kept](Sweep::keep_pressures), the error of the pressure in L1, over the load or a hundredth of the greatest, is no greater:
-    /// some 20 states a decade of the level for 1e-2, and 80 for 1e-3.
+    /// Error of the depth δ between two states, relative to √(δ δ_last), with δ_last the greatest depth (default:
+    /// 1e-4). Where [pressures are kept](Sweep::keep_pressures), the error of the pressure in L1, over the load or a
+    /// hundredth of the greatest, is no greater: some 20 states a decade of the level for 1e-2, and 80 for 1e-3.
     pub fn accuracy(mut self, accuracy: f64) -> Sweep {
         self.accuracy = accuracy;
         self
@@ -117,7 +117,8 @@ impl Sweep {
     }
 
     /// As [`Sweep::run`], calling `progress` after each state with all states so far, in the order of their solution;
-    /// it may end the sweep early, with the states that it has then. The pressure may not fall between neighbours among them either.
+    /// it may end the sweep early, with the states that it has then. The pressure may not fall between neighbours
+    /// among them either.
     ///
     /// # Errors
     /// As [`Sweep::run`].
@@ -234,9 +235,10 @@ impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> Solver<'_, P> {
         if ends { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 
-    /// Levels from `last` down by halves to the smallest contact, then what lies between them. Pairs of neighbours are halved in turn:
-    /// where a sweep ends early, the pairs left have about the same error. Where the pressure falls between the levels of a pair of the
-    /// first pass but the last, contacts of these levels and below are held or free as a whole.
+    /// Levels from `last` down by halves to the smallest contact, then what lies between them. Pairs of neighbours
+    /// are halved in turn: where a sweep ends early, the pairs left have about the same error. Where the pressure
+    /// falls between the levels of a pair of the first pass but the last, contacts of these levels and below are held
+    /// or free as a whole.
     fn sweep(&mut self, last: f64) -> Result<()> {
         let mut states = self.first_pass(last)?;
         (self.last_depth, self.last_level) = (self.depth(&states[0].state), last);
@@ -294,8 +296,8 @@ impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> Solver<'_, P> {
         RigidMotion { approach, tilt: [first, second] }
     }
 
-    /// Adds the state in the middle of a pair, and both halves to the pairs unless the pair is accurate. A sweep that ends leaves the
-    /// pair as it is.
+    /// Adds the state in the middle of a pair, and both halves to the pairs unless the pair is accurate. A sweep that
+    /// ends leaves the pair as it is.
     fn halve(&mut self, pair: Pair, pairs: &mut VecDeque<Pair>, ends: bool) -> Result<ControlFlow<()>> {
         let Pair { lower, upper, top, error } = pair;
         self.check_growth(&lower, &upper)?;
@@ -320,7 +322,8 @@ impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> Solver<'_, P> {
         Ok(self.add(&middle))
     }
 
-    /// Σ |δp| of the pressure in the middle from the line through both others, over its load, or over a part of the greatest load.
+    /// Σ |δp| of the pressure in the middle from the line through both others, over its load, or over a part of the
+    /// greatest load.
     fn error_of_pressure(&self, [lower, middle, upper]: [&Solved; 3]) -> f64 {
         let (grid, [low, level, high]) =
             (self.elastic.fields().grid(), [lower, middle, upper].map(|solved| solved.state.level));

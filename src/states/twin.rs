@@ -1,9 +1,9 @@
 //! How few levels give a pressure to an accuracy.
 //!
-//! A pressure is ∫ w dp_e over the levels that are held. One mean w between two cuts errs by ∫ (w − w̄) dp_e, which depends on the shape only
-//! weakly: in L1 over the force it is k Δw Δl √(Δl/l)/F, k = 0.05 to 0.15. So the same cuts of the same w on a Hertz ball and on a cone, whose
-//! elastic pressures are known, tell the error before an elastic contact is solved. Cuts are dense as (|dw/dl|/√l)^(2/5), which makes the errors
-//! between them equal.
+//! A pressure is ∫ w dp_e over the levels that are held. One mean w between two cuts errs by ∫ (w − w̄) dp_e, which
+//! depends on the shape only weakly: in L1 over the force it is k Δw Δl √(Δl/l)/F, k = 0.05 to 0.15. So the same cuts
+//! of the same w on a Hertz ball and on a cone, whose elastic pressures are known, tell the error before an elastic
+//! contact is solved. Cuts are dense as (|dw/dl|/√l)^(2/5), which makes the errors between them equal.
 
 use std::f64::consts::PI;
 
@@ -55,8 +55,8 @@ impl Profile {
         self.tops.last().map_or(0.0, |last| last.0)
     }
 
-    /// The mean density above a level, and at least in the last group, times the greatest level, over the total: by how many times errors of
-    /// the greatest levels count.
+    /// The mean density above a level, and at least in the last group, times the greatest level, over the total: by
+    /// how many times errors of the greatest levels count.
     pub(crate) fn amplification(&self, level: f64) -> f64 {
         let [.., (last, _), (top, total)] = self.tops[..] else { return 1.0 };
         let below = last.min(level);
@@ -86,8 +86,8 @@ impl Profile {
         })
     }
 
-    /// Levels at which a cut leaves an error of at most `accuracy`, in L1 over `size`, on both twins; and this error. All groups for
-    /// an accuracy of 0.
+    /// Levels at which a cut leaves an error of at most `accuracy`, in L1 over `size`, on both twins; and this error.
+    /// All groups for an accuracy of 0.
     pub(crate) fn cuts(&self, size: f64, accuracy: f64) -> (Vec<f64>, f64) {
         let all = || self.tops.iter().map(|top| top.0);
         let (size, count) = (size.max(self.total()), self.tops.len());

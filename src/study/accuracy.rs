@@ -18,7 +18,8 @@ pub struct Accuracy {
     target: f64,
 }
 
-/// Part of the target for the residual of the solver, relative to the displacement: far below the errors of mesh and time.
+/// Part of the target for the residual of the solver, relative to the displacement: far below the errors of mesh and
+/// time.
 const OF_SOLVER: f64 = 0.01;
 /// Part of the target for the series of a body that has none.
 const OF_SERIES: f64 = 0.1;

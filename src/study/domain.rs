@@ -10,7 +10,8 @@ use crate::load::Load;
 use crate::states::{as_elastic, greatest};
 use crate::study::scene::Scene;
 
-/// Number of even parts of the run at whose ends the loads are looked at, and every so many of these that give a contact.
+/// Number of even parts of the run at whose ends the loads are looked at, and every so many of these that give a
+/// contact.
 const PARTS: u32 = 64;
 const THINNED: usize = 8;
 /// Cells along a side of the contacts that find the domain.
@@ -145,7 +146,8 @@ fn grid_of(sides: [Side; 2], lengths: [f64; 2]) -> Result<Grid> {
     Grid::new(sides.map(|side| if matches!(side, Side::Uniform(_)) { 1 } else { CELLS }), lengths)
 }
 
-/// Loads of the bodies at one time, as those of an elastic body of unit compliance under which the contact is as large as ever.
+/// Loads of the bodies at one time, as those of an elastic body of unit compliance under which the contact is as
+/// large as ever.
 fn greatest_loads(scene: &Scene<'_>, compliance: f64) -> Result<Vec<Vec<Load>>> {
     let all: Vec<Vec<Load>> =
         scene.histories.iter().map(|history| sampled(*history, scene.until)).collect::<Result<_>>()?;

@@ -117,7 +117,8 @@ impl Runs<'_, '_> {
 }
 
 impl Level {
-    /// The difference of each observable from a run on a finer mesh or in shorter steps, at all ends of steps that both have.
+    /// The difference of each observable from a run on a finer mesh or in shorter steps, at all ends of steps that
+    /// both have.
     pub(super) fn differences(&self, finer: &Level, observed: &[Observed<'_>]) -> Vec<f64> {
         let common = common_ends(&self.times, &finer.times);
         let one = |(k, Observed { reading, .. }): (usize, &Observed<'_>)| match reading {

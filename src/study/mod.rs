@@ -31,25 +31,28 @@ use crate::study::scene::Scene;
 /// Most cells of a mesh, unless another budget is given.
 const MOST_CELLS: usize = 1 << 18;
 
-/// A convergence study of a scene along its load history: the extent of the contact is found, the error in time measured on a
-/// coarse mesh, and the error of the mesh on meshes each about 1.5 times as fine as the last, until what is asked is met. The result is
-/// the finest run itself, with the measured error of each quantity.
+/// A convergence study of a scene along its load history: the extent of the contact is found, the error in time
+/// measured on a coarse mesh, and the error of the mesh on meshes each about 1.5 times as fine as the last, until
+/// what is asked is met. The result is the finest run itself, with the measured error of each quantity.
 ///
 /// # Rule
-/// 1. *Domain*: elastic contacts under the greatest loads, on 24 × 24 cells, then the first run of the study; [`Study::domain`],
+/// 1. *Domain*: elastic contacts under the greatest loads, on 24 × 24 cells, then the first run of the study;
+///    [`Study::domain`],
 ///    [`Study::period`] and [`Study::line`] give sides instead.
-/// 2. *Time*: on the first mesh, 16 cells across the widest contact, the run is taken with a tolerance and with an eighth of it. Their
-///    difference at the ends of steps is the error in time; the tolerance falls until this is at most 0.4 of the accuracy.
-/// 3. *Mesh*: the run is taken on finer meshes, in the same steps or shorter ones. Of three meshes the differences d₁ and d₂
-///    show the order p, and 1.25 d₂/(rᵖ − 1) is the error of the finest: the grid convergence index (P. J. Roache, J. Fluids Eng. 116
-///    (1994) 405). Two meshes have 3 d/(r − 1).
-/// 4. It ends where error in time and error of the mesh of all quantities that are [asked](Study::ask) for are at most the
-///    accuracy, where the [budget](Study::cells) is used up, or where a quantity does not converge on four meshes or in time
-///    ([`Ending`]).
+/// 2. *Time*: on the first mesh, 16 cells across the widest contact, the run is taken with a tolerance and with an
+///    eighth of it. Their difference at the ends of steps is the error in time; the tolerance falls until this is at
+///    most 0.4 of the accuracy.
+/// 3. *Mesh*: the run is taken on finer meshes, in the same steps or shorter ones. Of three meshes the differences d₁
+///    and d₂ show the order p, and 1.25 d₂/(rᵖ − 1) is the error of the finest: the grid convergence index (P. J.
+///    Roache, J. Fluids Eng. 116 (1994) 405). Two meshes have 3 d/(r − 1).
+/// 4. It ends where error in time and error of the mesh of all quantities that are [asked](Study::ask) for are at
+///    most the accuracy, where the [budget](Study::cells) is used up, or where a quantity does not converge on four
+///    meshes or in time ([`Ending`]).
 ///
-/// Each error is relative to the greatest value of the run. Where the differences do not fall with the cells, as of a pressure that is infinite at an edge,
-/// the study gives no error, and says so ([`Measured::error`]). A measured error is a typical size of the true one and no bound: `docs/accuracy.md` has the ratios of
-/// random scenes. What no mesh of the study resolves, such as waves shorter than its cells, is not seen by it.
+/// Each error is relative to the greatest value of the run. Where the differences do not fall with the cells, as of a
+/// pressure that is infinite at an edge, the study gives no error, and says so ([`Measured::error`]). A measured
+/// error is a typical size of the true one and no bound: `docs/accuracy.md` has the ratios of random scenes. What no
+/// mesh of the study resolves, such as waves shorter than its cells, is not seen by it.
 ///
 /// ```
 /// use viscocontact::prelude::*;
@@ -112,7 +115,8 @@ pub struct StudyProgress {
 }
 
 impl<'a> Study<'a> {
-    /// A study of a scene from rest to the time `until` \[s\]: `scene` gives the contact on a grid, with these settings.
+    /// A study of a scene from rest to the time `until` \[s\]: `scene` gives the contact on a grid, with these
+    /// settings.
     pub fn new(
         scene: impl Fn(Grid, Settings) -> Result<Builder> + 'a,
         history: &'a dyn LoadHistory,
@@ -145,7 +149,8 @@ impl<'a> Study<'a> {
         self
     }
 
-    /// Asks for the accuracy of a quantity, too. Approach and force are asked for by default; all of [`Observable`] are measured.
+    /// Asks for the accuracy of a quantity, too. Approach and force are asked for by default; all of [`Observable`]
+    /// are measured.
     pub fn ask(mut self, observable: Observable) -> Study<'a> {
         self.observed.iter_mut().filter(|own| own.name == observable.name()).for_each(|own| own.is_asked = true);
         self
@@ -171,8 +176,9 @@ impl<'a> Study<'a> {
         self
     }
 
-    /// Asks for the accuracy of the pressure fields at these times \[s\], in L1 over their load. Nearly all of their error is at the rim of the contact and
-    /// falls with the power 3/2 of the cells, on punches with the root: they take finer meshes than approach and force.
+    /// Asks for the accuracy of the pressure fields at these times \[s\], in L1 over their load. Nearly all of their
+    /// error is at the rim of the contact and falls with the power 3/2 of the cells, on punches with the root: they
+    /// take finer meshes than approach and force.
     /// [`StudyResult::fields`] are those of the finest run.
     pub fn fields_at(mut self, times: &[f64]) -> Study<'a> {
         self.fields_at = times.to_vec();
@@ -214,8 +220,8 @@ impl<'a> Study<'a> {
         self
     }
 
-    /// Most work of the whole study: convolution equivalents, each times the cells of its mesh (default: no limit). A run that is
-    /// expected to take more than what is left is not begun; those of the first mesh are.
+    /// Most work of the whole study: convolution equivalents, each times the cells of its mesh (default: no limit). A
+    /// run that is expected to take more than what is left is not begun; those of the first mesh are.
     pub fn work(mut self, most: f64) -> Study<'a> {
         self.budget.work = Some(most);
         self
@@ -230,9 +236,10 @@ impl<'a> Study<'a> {
     /// Runs the study.
     ///
     /// # Errors
-    /// If the end of the run or a given length is not finite and positive, a time of a field is not in the run, no cells are allowed, there is not one history
-    /// for each body, no domain holds the contact, the surfaces attract each other and the domain is not given, or a run of the
-    /// first mesh fails; [`Error::Cancelled`](crate::Error::Cancelled) where it was cancelled. A failure on a finer mesh ends the study
+    /// If the end of the run or a given length is not finite and positive, a time of a field is not in the run, no
+    /// cells are allowed, there is not one history for each body, no domain holds the contact, the surfaces attract
+    /// each other and the domain is not given, or a run of the first mesh fails;
+    /// [`Error::Cancelled`](crate::Error::Cancelled) where it was cancelled. A failure on a finer mesh ends the study
     /// with what it has ([`Ending::Failed`]).
     pub fn run(self) -> Result<StudyResult> {
         self.run_with(|_| ControlFlow::Continue(()))

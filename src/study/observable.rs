@@ -4,7 +4,8 @@ use std::fmt;
 
 use crate::fields::Fields;
 
-/// A quantity of a run whose error a [`Study`](crate::study::Study) measures, at all times relative to its greatest value.
+/// A quantity of a run whose error a [`Study`](crate::study::Study) measures, at all times relative to its greatest
+/// value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]

@@ -30,7 +30,8 @@ pub struct Mesh {
     pub steps: usize,
     /// Convolution equivalents of the run, each O(N log N) in the number of cells.
     pub convolutions: f64,
-    /// The change of each quantity from the mesh before, in the order of [`StudyResult::quantities`]; `None` on the first one.
+    /// The change of each quantity from the mesh before, in the order of [`StudyResult::quantities`]; `None` on the
+    /// first one.
     pub changes: Vec<Option<f64>>,
 }
 
@@ -79,7 +80,8 @@ impl Measured {
 pub enum Ending {
     /// What was asked is met.
     Reached,
-    /// The error in time of a quantity that is asked for does not fall below the accuracy with shorter steps: meshes would not lower it.
+    /// The error in time of a quantity that is asked for does not fall below the accuracy with shorter steps: meshes
+    /// would not lower it.
     Time,
     /// A quantity that is asked for does not converge: its changes do not fall with the cells.
     NoConvergence,
@@ -122,8 +124,9 @@ pub(super) struct Steps {
     pub(super) tolerance: f64,
 }
 
-/// The result of a [`Study`](crate::study::Study): its finest run, with the measured error of each quantity and the table of all
-/// meshes ([`Display`](std::fmt::Display), [`StudyResult::write_csv`], and with the feature `plot` a picture).
+/// The result of a [`Study`](crate::study::Study): its finest run, with the measured error of each quantity and the
+/// table of all meshes ([`Display`](std::fmt::Display), [`StudyResult::write_csv`], and with the feature `plot` a
+/// picture).
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct StudyResult {
@@ -218,13 +221,15 @@ impl StudyResult {
         &self.finest.times
     }
 
-    /// A quantity at [`StudyResult::times`] in the finest run, by its name; the greatest pressure of the run is one number.
+    /// A quantity at [`StudyResult::times`] in the finest run, by its name; the greatest pressure of the run is one
+    /// number.
     pub fn values(&self, name: &str) -> Option<&[f64]> {
         let k = self.quantities.iter().position(|own| own.name == name)?;
         Some(&self.finest.values[k])
     }
 
-    /// The fields of the finest run at the times that were asked for ([`Study::fields_at`](crate::study::Study::fields_at)).
+    /// The fields of the finest run at the times that were asked for
+    /// ([`Study::fields_at`](crate::study::Study::fields_at)).
     pub fn fields(&self) -> impl Iterator<Item = Fields<'_>> {
         self.finest.fields.iter().map(KeptFields::fields)
     }
@@ -260,7 +265,8 @@ impl StudyResult {
         Some(Cost { cells, steps: steps.ceil() as usize, work, bytes: (self.bytes() as f64 * many) as u64 })
     }
 
-    /// Writes the table as a CSV file: a row for each mesh, and rows of errors, orders and values. An existing file is replaced.
+    /// Writes the table as a CSV file: a row for each mesh, and rows of errors, orders and values. An existing file
+    /// is replaced.
     ///
     /// # Errors
     /// If the file cannot be written.

@@ -40,7 +40,8 @@ impl Scene<'_> {
 }
 
 impl Builder {
-    /// The sum of the contact compliances at the end of a run, as far as the materials are known; at once where it is infinite then.
+    /// The sum of the contact compliances at the end of a run, as far as the materials are known; at once where it is
+    /// infinite then.
     pub(super) fn compliance_until(&self, until: f64) -> Result<f64> {
         let creeping = self.temperature.as_ref().map_or(Ok(until), |history| history.reduced_time(0.0, until))?;
         let at = |time: f64| {

@@ -19,11 +19,13 @@ const RATIO: f64 = 1.5;
 const RATIOS: [f64; 2] = [1.25, 2.0];
 /// Part of what is left to the mesh at which the next mesh aims.
 const AIM: f64 = 0.7;
-/// Part of the accuracy for the error in time, and at which shorter steps aim; and the tolerance of steps to begin with.
+/// Part of the accuracy for the error in time, and at which shorter steps aim; and the tolerance of steps to begin
+/// with.
 const IN_TIME: f64 = 0.4;
 const AIM_IN_TIME: f64 = 0.3;
 const TOLERANCE: f64 = 0.25;
-/// Ratio of the tolerances of two runs whose difference is the error in time of the first. The second errs by a part of this.
+/// Ratio of the tolerances of two runs whose difference is the error in time of the first. The second errs by a part
+/// of this.
 const SHORTER: f64 = 8.0;
 const OF_BOTH: f64 = SHORTER / (SHORTER - 1.0);
 /// Tolerances of adaptive steps, and the ratio of those of finer meshes, whose steps end where those of the first do.
@@ -68,7 +70,8 @@ pub(super) fn run(study: Study<'_>, progress: &mut dyn FnMut(StudyProgress) -> C
     Err(Error::NoDomain { length: domain.grid(ACROSS)?.lengths()[0] })
 }
 
-/// Meshes on a domain until what is asked is met, or the budget ends it; nothing where the contact reaches the edge of the domain on one of them.
+/// Meshes on a domain until what is asked is met, or the budget ends it; nothing where the contact reaches the edge
+/// of the domain on one of them.
 fn on_domain(runs: &mut Runs<'_, '_>, domain: Domain, budget: &Budget) -> Result<Option<StudyResult>> {
     let (observed, accuracy) = (runs.observed, runs.scene.accuracy);
     let First { level, domain, mut across, steps, in_time, steps_order } = first_mesh(runs, domain, budget.cells)?;
@@ -109,7 +112,8 @@ fn on_domain(runs: &mut Runs<'_, '_>, domain: Domain, budget: &Budget) -> Result
     }
 }
 
-/// The next mesh, so many times as fine as one with so many cells across; the finest one that is allowed, where that is finer enough.
+/// The next mesh, so many times as fine as one with so many cells across; the finest one that is allowed, where that
+/// is finer enough.
 fn next_grid(domain: &Domain, across: f64, ratio: f64, most_cells: usize) -> Result<(f64, Grid)> {
     let ratio = ratio.clamp(RATIOS[0], RATIOS[1]);
     let next = domain.grid(ratio * across)?;
@@ -195,7 +199,8 @@ fn worst_asked(observed: &[Observed<'_>], errors: &[f64]) -> f64 {
 fn measured(observed: &[Observed<'_>], meshes: &[Mesh], in_time: &[f64], accuracy: f64) -> Vec<Measured> {
     let sides: Vec<f64> = meshes.iter().map(Mesh::side).collect();
     let all = |k: usize| meshes.iter().filter_map(|mesh| mesh.changes[k]).collect::<Vec<f64>>();
-    // a pressure that does not converge is infinite at an edge or a tip: nothing is of a higher order than the first beside it
+    // a pressure that does not converge is infinite at an edge or a tip: nothing is of a higher order than the first
+    // beside it
     let is_greatest = |own: &Observed<'_>| matches!(own.reading, Reading::Greatest(_));
     let peak = observed.iter().position(is_greatest).map(&all).unwrap_or_default();
     let is_singular = peak.len() > 1 && OfMesh::of(&sides, &peak, SMOOTH).order.is_none();

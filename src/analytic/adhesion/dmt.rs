@@ -3,8 +3,8 @@ use std::f64::consts::PI;
 use super::Bodies;
 use crate::error::Result;
 
-/// A sphere that sticks to a stiff half-space by a long-range attraction, which does not deform it (Derjaguin, Muller & Toporov,
-/// J. Colloid Interface Sci. 53, 1975): W = 4E*a³/3R − 2π w R, ω = a²/R.
+/// A sphere that sticks to a stiff half-space by a long-range attraction, which does not deform it (Derjaguin, Muller
+/// & Toporov, J. Colloid Interface Sci. 53, 1975): W = 4E*a³/3R − 2π w R, ω = a²/R.
 ///
 /// ```
 /// use viscocontact::analytic::Dmt;

@@ -3,8 +3,8 @@ use std::f64::consts::PI;
 use super::Bodies;
 use crate::error::Result;
 
-/// A rigid flat circular punch that sticks to an elastic half-space with its whole face, by an attraction of vanishing range (Kendall,
-/// J. Phys. D 4, 1971): W = 2a E* ω until it separates.
+/// A rigid flat circular punch that sticks to an elastic half-space with its whole face, by an attraction of
+/// vanishing range (Kendall, J. Phys. D 4, 1971): W = 2a E* ω until it separates.
 ///
 /// ```
 /// use viscocontact::analytic::AdhesivePunch;

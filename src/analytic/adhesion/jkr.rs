@@ -3,7 +3,8 @@ use std::f64::consts::PI;
 use super::Bodies;
 use crate::error::Result;
 
-/// A sphere that sticks to an elastic half-space by an attraction of vanishing range (Johnson, Kendall & Roberts, Proc. R. Soc. A 324, 1971):
+/// A sphere that sticks to an elastic half-space by an attraction of vanishing range (Johnson, Kendall & Roberts,
+/// Proc. R. Soc. A 324, 1971):
 ///
 /// W = 4E*a³/3R − √(8π w E* a³), ω = a²/R − √(2π w a/E*).
 ///
@@ -45,7 +46,8 @@ impl Jkr {
         (1.125 * PI * work * length * length / modulus).cbrt()
     }
 
-    /// The contact radius at the least approach, where the force is −(5/6)π w R: a contact of given approach separates there \[m\].
+    /// The contact radius at the least approach, where the force is −(5/6)π w R: a contact of given approach
+    /// separates there \[m\].
     pub fn radius_at_least_approach(&self) -> f64 {
         self.radius_at_pull_off() / 9f64.cbrt()
     }

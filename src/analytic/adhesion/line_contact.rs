@@ -3,8 +3,8 @@ use std::f64::consts::PI;
 use super::Bodies;
 use crate::error::Result;
 
-/// A cylinder that sticks to an elastic half-space in plane strain, by an attraction of vanishing range (Barquins, J. Adhes. 26, 1988):
-/// W = πE*a²/4R − √(2π w E* a) for a unit of its length.
+/// A cylinder that sticks to an elastic half-space in plane strain, by an attraction of vanishing range (Barquins, J.
+/// Adhes. 26, 1988): W = πE*a²/4R − √(2π w E* a) for a unit of its length.
 ///
 /// ```
 /// use viscocontact::analytic::AdhesiveCylinder;
@@ -18,7 +18,8 @@ use crate::error::Result;
 pub struct AdhesiveCylinder(Bodies);
 
 impl AdhesiveCylinder {
-    /// A cylinder of `radius` R \[m\] on a body of contact `modulus` E* \[Pa\] with the `work` of separation w \[J/m²\].
+    /// A cylinder of `radius` R \[m\] on a body of contact `modulus` E* \[Pa\] with the `work` of separation w
+    /// \[J/m²\].
     ///
     /// # Errors
     /// If one of them is not finite and positive.

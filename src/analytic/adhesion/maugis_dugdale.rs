@@ -5,9 +5,9 @@ use crate::error::{Result, finite, positive};
 use crate::numeric::golden_section;
 use crate::quadrature::bisect;
 
-/// A sphere that sticks to an elastic half-space by Dugdale's attraction, a constant traction σ₀ up to the gap w/σ₀ (Maugis, J. Colloid
-/// Interface Sci. 150, 1992): between [`Dmt`](crate::analytic::Dmt) for λ → 0 and [`Jkr`](crate::analytic::Jkr) for λ → ∞, with
-/// λ = 2σ₀ (R/(π w K²))^⅓ and K = 4E*/3.
+/// A sphere that sticks to an elastic half-space by Dugdale's attraction, a constant traction σ₀ up to the gap w/σ₀
+/// (Maugis, J. Colloid Interface Sci. 150, 1992): between [`Dmt`](crate::analytic::Dmt) for λ → 0 and
+/// [`Jkr`](crate::analytic::Jkr) for λ → ∞, with λ = 2σ₀ (R/(π w K²))^⅓ and K = 4E*/3.
 ///
 /// ```
 /// use viscocontact::analytic::MaugisDugdale;
@@ -24,7 +24,8 @@ pub struct MaugisDugdale {
 }
 
 impl MaugisDugdale {
-    /// A sphere of `radius` R \[m\] on a body of contact `modulus` E* \[Pa\] with the `work` of separation w \[J/m²\] and the `traction` σ₀ \[Pa\].
+    /// A sphere of `radius` R \[m\] on a body of contact `modulus` E* \[Pa\] with the `work` of separation w \[J/m²\]
+    /// and the `traction` σ₀ \[Pa\].
     ///
     /// # Errors
     /// If one of them is not finite and positive.

@@ -7,15 +7,16 @@ use crate::rheology::{CreepSpectrum, Material};
 
 /// The edge of a contact that opens at a speed v on a creeping body, under an attraction of the range ρ.
 ///
-/// The bodies open within a zone of the length α at the edge. A point of the zone passes it in the time α/v, and feels the body
-/// as stiff as the body is over this time. With a constant traction over the zone (Dugdale's law) the opening of a point is a hereditary
-/// integral of the elastic one, and its work is w (Schapery, Int. J. Fract. 11, 1975; Greenwood, J. Phys. D 37, 2004):
+/// The bodies open within a zone of the length α at the edge. A point of the zone passes it in the time α/v, and
+/// feels the body as stiff as the body is over this time. With a constant traction over the zone (Dugdale's law) the
+/// opening of a point is a hereditary integral of the elastic one, and its work is w (Schapery, Int. J. Fract. 11,
+/// 1975; Greenwood, J. Phys. D 37, 2004):
 ///
 /// 1/y = ∫₀¹ C((1 − ξ) α/v)/C(∞) · ½ ln((1 + √ξ)/(1 − √ξ)) dξ, α = z y l, l = E*ρ²/w, z = π/4.
 ///
-/// y w is the work that the opening of a unit of area takes, E* the relaxed contact modulus 1/C(∞). So y goes from 1 (slow) to
-/// C(∞)/C(0) (fast), and follows from v over l and the creep alone: the range of an attraction is a length of the material. The rest of the
-/// body has to be relaxed: l and the contact pass in times that differ.
+/// y w is the work that the opening of a unit of area takes, E* the relaxed contact modulus 1/C(∞). So y goes from 1
+/// (slow) to C(∞)/C(0) (fast), and follows from v over l and the creep alone: the range of an attraction is a length
+/// of the material. The rest of the body has to be relaxed: l and the contact pass in times that differ.
 ///
 /// ```
 /// use viscocontact::analytic::OpeningEdge;
@@ -63,7 +64,8 @@ const CONSTANT_TRACTION: f64 = FRAC_PI_4;
 const POINTS: usize = 48;
 /// Halvings of an interval that holds a root.
 const HALVINGS: usize = 48;
-/// The logarithm of the passage of a zone over the shortest and the longest time of the body is sought between minus and plus so much.
+/// The logarithm of the passage of a zone over the shortest and the longest time of the body is sought between minus
+/// and plus so much.
 const BEYOND: f64 = 100.0;
 /// Steps of the contact radius, geometric down to a thousandth.
 const STEPS: usize = 1000;
@@ -73,7 +75,8 @@ impl OpeningEdge {
     /// The edge of a contact with the body of `material` by an attraction of `work` w \[J/m²\] and `range` ρ \[m\].
     ///
     /// # Errors
-    /// If work or range is not finite and positive, or the material has no exponential series, no elastic response or flows without limit.
+    /// If work or range is not finite and positive, or the material has no exponential series, no elastic response or
+    /// flows without limit.
     pub fn new(material: &Material, work: f64, range: f64) -> Result<OpeningEdge> {
         let what = "the theory of an opening edge";
         positive("work of separation", work)?;
@@ -120,8 +123,9 @@ impl OpeningEdge {
         Ok(self.opening(|[edge_speed, _]| edge_speed > speed)[1])
     }
 
-    /// A sphere of `radius` R \[m\] that rested at an `approach` ω \[m\] until the body was relaxed, and is pulled back at the constant `speed` V of
-    /// the approach \[m/s\]: its state at the greatest pull. With the contact radius a and the relaxed bulk of the body
+    /// A sphere of `radius` R \[m\] that rested at an `approach` ω \[m\] until the body was relaxed, and is pulled
+    /// back at the constant `speed` V of the approach \[m/s\]: its state at the greatest pull. With the contact
+    /// radius a and the relaxed bulk of the body
     ///
     /// W = 4E*a³/3R − √(8π y w E* a³), ω = a²/R − √(2π y w a/E*), da/dt = −v(y),
     ///
@@ -164,8 +168,8 @@ impl OpeningEdge {
         self.at(passage.exp())
     }
 
-    /// Force, approach, contact radius, speed of the edge and work at the greatest pull, by implicit steps of the contact radius from
-    /// radius and approach at rest on.
+    /// Force, approach, contact radius, speed of the edge and work at the greatest pull, by implicit steps of the
+    /// contact radius from radius and approach at rest on.
     fn greatest_pull(&self, radius: f64, [start, at_rest]: [f64; 2], speed: f64, steps: usize) -> [f64; 5] {
         // of the relaxed body, at another work of separation
         let state = |a: f64, work: f64| Jkr(Bodies { length: radius, modulus: 1.0 / self.relaxed, work }).state(a);

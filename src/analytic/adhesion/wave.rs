@@ -4,9 +4,9 @@ use super::Bodies;
 use crate::error::{Result, positive};
 use crate::quadrature::bisect;
 
-/// A wavy surface of gap D (1 − cos 2πx/λ) that sticks to an elastic half-space in plane strain, by an attraction of vanishing range
-/// (Johnson, Int. J. Solids Struct. 32, 1995): the mean pressure is p* (sin² ψ − α √tan ψ) at contacts of half-width a = λψ/π, with
-/// p* = πE*D/λ and α² = 2wλ/(π²D²E*).
+/// A wavy surface of gap D (1 − cos 2πx/λ) that sticks to an elastic half-space in plane strain, by an attraction of
+/// vanishing range (Johnson, Int. J. Solids Struct. 32, 1995): the mean pressure is p* (sin² ψ − α √tan ψ) at
+/// contacts of half-width a = λψ/π, with p* = πE*D/λ and α² = 2wλ/(π²D²E*).
 ///
 /// ```
 /// use viscocontact::analytic::AdhesiveWave;
@@ -22,7 +22,8 @@ pub struct AdhesiveWave {
 }
 
 impl AdhesiveWave {
-    /// A wave of `amplitude` D \[m\] and `wavelength` λ \[m\] on a body of contact `modulus` E* \[Pa\] with the `work` of separation w \[J/m²\].
+    /// A wave of `amplitude` D \[m\] and `wavelength` λ \[m\] on a body of contact `modulus` E* \[Pa\] with the
+    /// `work` of separation w \[J/m²\].
     ///
     /// # Errors
     /// If one of them is not finite and positive.
@@ -44,10 +45,11 @@ impl AdhesiveWave {
         full * (angle.sin().powi(2) - self.strength() * angle.tan().sqrt())
     }
 
-    /// The half-width of the contacts at [`AdhesiveWave::pull_off_pressure`] \[m\]; NaN for α > 1.065, where isolated contacts have no least
-    /// mean pressure.
+    /// The half-width of the contacts at [`AdhesiveWave::pull_off_pressure`] \[m\]; NaN for α > 1.065, where isolated
+    /// contacts have no least mean pressure.
     pub fn width_at_pull_off(&self) -> f64 {
-        // the slope vanishes where sin 2ψ √tan ψ cos² ψ = α/2: at the minimum, and beyond the greatest left side at a maximum
+        // the slope vanishes where sin 2ψ √tan ψ cos² ψ = α/2: at the minimum, and beyond the greatest left side at a
+        // maximum
         let steepness = |angle: f64| (2.0 * angle).sin() * angle.tan().sqrt() * angle.cos().powi(2);
         let steepest = 0.375f64.sqrt().asin();
         let wanted = 0.5 * self.strength();

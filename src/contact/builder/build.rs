@@ -29,21 +29,24 @@ impl Builder {
     /// Makes the contact: undisturbed bodies at time 0, without load.
     ///
     /// # Errors
-    /// If geometry or material is missing, a gap is NaN or −∞ or none is finite, a rheology is known until NaN, a setting is
-    /// out of range, the kernel was made for another grid or cannot be made for its cells
-    /// ([`InfluenceKernel::half_space`](crate::InfluenceKernel::half_space)), or the rectangle rule was chosen for a rheology without elastic response.
+    /// If geometry or material is missing, a gap is NaN or −∞ or none is finite, a rheology is known until NaN, a
+    /// setting is out of range, the kernel was made for another grid or cannot be made for its cells
+    /// ([`InfluenceKernel::half_space`](crate::InfluenceKernel::half_space)), or the rectangle rule was chosen for a
+    /// rheology without elastic response.
     ///
-    /// If the kernel belongs to a layer, and the material has another Poisson's ratio, or one that is not constant, or a
-    /// counter body deforms ([`KernelError::LayerMaterial`](crate::KernelError::LayerMaterial)).
+    /// If the kernel belongs to a layer, and the material has another Poisson's ratio, or one that is not constant,
+    /// or a counter body deforms ([`KernelError::LayerMaterial`](crate::KernelError::LayerMaterial)).
     ///
-    /// If a rheology without an exact series is given no [`Builder::times`] ([`MaterialError::NoExponentialSeries`](crate::rheology::MaterialError::NoExponentialSeries)), no series is
+    /// If a rheology without an exact series is given no [`Builder::times`]
+    /// ([`MaterialError::NoExponentialSeries`](crate::rheology::MaterialError::NoExponentialSeries)), no series is
     /// within the tolerance, or the times span more than 50 decades.
     ///
-    /// If there is not enough memory ([`Error::OutOfMemory`], before any is taken; systems that overcommit memory, as Linux
-    /// does, may grant more than is free), or more than 2³² − 1 cells would be computed.
+    /// If there is not enough memory ([`Error::OutOfMemory`], before any is taken; systems that overcommit memory, as
+    /// Linux does, may grant more than is free), or more than 2³² − 1 cells would be computed.
     ///
-    /// If [`Builder::ranks`] share out the rows: an error of one rank is an error on all ([`RanksError::Failed`](crate::parallel::RanksError::Failed)); a scene that
-    /// cannot be shared out is refused ([`Error::NotCovered`](crate::Error::NotCovered)).
+    /// If [`Builder::ranks`] share out the rows: an error of one rank is an error on all
+    /// ([`RanksError::Failed`](crate::parallel::RanksError::Failed)); a scene that cannot be shared out is refused
+    /// ([`Error::NotCovered`](crate::Error::NotCovered)).
     pub fn build(mut self) -> Result<ViscoelasticContact> {
         let Some(group) = &self.ranks else {
             self.validate()?;
@@ -122,13 +125,15 @@ impl Builder {
         Ok((gap, even, region))
     }
 
-    /// The memory that the contact will take; no field is allocated to find out. The cells that are computed follow from the
-    /// symmetry of the gap ([`Settings::symmetry`](crate::contact::Settings::symmetry)); with [`Settings::window`](crate::contact::Settings::window) the figure holds for the largest window. A
-    /// load that breaks the symmetry makes the contact compute the mirror images too: the memory for these is returned with
+    /// The memory that the contact will take; no field is allocated to find out. The cells that are computed follow
+    /// from the symmetry of the gap ([`Settings::symmetry`](crate::contact::Settings::symmetry)); with
+    /// [`Settings::window`](crate::contact::Settings::window) the figure holds for the largest window. A load that
+    /// breaks the symmetry makes the contact compute the mirror images too: the memory for these is returned with
     /// symmetry set to false. A gap for which there is no memory counts as asymmetric.
     ///
-    /// A series of the material over [`Builder::times`] is fitted for this, in a tenth of a second. The pool of the call
-    /// gives the threads. For a contact that [ranks](crate::parallel) share out, the local rows count; all ranks must call.
+    /// A series of the material over [`Builder::times`] is fitted for this, in a tenth of a second. The pool of the
+    /// call gives the threads. For a contact that [ranks](crate::parallel) share out, the local rows count; all ranks
+    /// must call.
     ///
     /// ```
     /// use viscocontact::prelude::*;
@@ -211,7 +216,8 @@ impl Builder {
 }
 
 impl ViscoelasticContact {
-    /// An elastic contact of this compliance with the same rigid bodies, solved to `tolerance` on the whole grid, but for mirror images.
+    /// An elastic contact of this compliance with the same rigid bodies, solved to `tolerance` on the whole grid, but
+    /// for mirror images.
     ///
     /// # Errors
     /// If there is no memory for it.
@@ -254,19 +260,21 @@ const LEAST_ZONE: f64 = 2.0;
 /// A zone shorter by rounding is not refused.
 const ROUNDING: f64 = 1e-9;
 
-/// The length of the zone in which an attraction of this [`softening`] acts at the edge of a contact, over the longer side of a cell. The
-/// pull-off force errs by this figure alike for all laws (docs/accuracy.md).
+/// The length of the zone in which an attraction of this [`softening`] acts at the edge of a contact, over the longer
+/// side of a cell. The pull-off force errs by this figure alike for all laws (docs/accuracy.md).
 pub(in crate::contact) fn cells_in_zone(softening: f64, compliance: f64, grid: &Grid) -> f64 {
     1.0 / (longer_side(grid) * softening * compliance)
 }
 
-/// The longer side of a cell, of the sides along which there are several cells: a line contact is the same along its one cell.
+/// The longer side of a cell, of the sides along which there are several cells: a line contact is the same along its
+/// one cell.
 fn longer_side(grid: &Grid) -> f64 {
     let sides = grid.spacing().into_iter().zip(grid.cells()).filter(|(_, cells)| *cells > 1);
     sides.map(|(side, _)| side).reduce(f64::max).unwrap_or(grid.spacing()[0])
 }
 
-/// The slope at which a law softens. Rejects a law that is no attraction, and a mesh on which even the elastic response has too short a zone.
+/// The slope at which a law softens. Rejects a law that is no attraction, and a mesh on which even the elastic
+/// response has too short a zone.
 fn resolved_softening(law: &dyn Attraction, material: &Material, grid: &Grid) -> Result<f64> {
     let of_law = || {
         positive("work of separation", law.work())?;

@@ -27,20 +27,21 @@ use crate::memory;
 /// | transforms on several threads | 16 more |
 /// | attraction between surfaces | 68: its traction at both ends of a step and in the trial, 24, what its steps work in, 40, and the near field of the kernel and its inverse, 4, and 400 to 480 bytes a column for each thread |
 ///
-/// and per cell of the whole grid 8 for the gap, 8 for the pressure where not all cells are computed, 2 if there are several
-/// bodies. Transforms need tables of their own length, which counts in line contacts: 144 bytes per cell.
+/// and per cell of the whole grid 8 for the gap, 8 for the pressure where not all cells are computed, 2 if there are
+/// several bodies. Transforms need tables of their own length, which counts in line contacts: 144 bytes per cell.
 ///
-/// Counted allocations agree to 5 % and a few kB (`tests/allocations`). Not included: 8 bytes per computed cell from the first
-/// adaptive step of a body with elastic response and memory (16 with a window, 24 with
+/// Counted allocations agree to 5 % and a few kB (`tests/allocations`). Not included: 8 bytes per computed cell from
+/// the first adaptive step of a body with elastic response and memory (16 with a window, 24 with
 /// [`Frame::Indenter`](crate::contact::Frame::Indenter)); the displacement where not all cells are
-/// computed, made on first use, with a kernel for the whole grid; 8 bytes per computed cell from the first load that tilts,
-/// or presses several bodies; [snapshots](crate::contact::Snapshot); the old state during a step that moves to a larger
-/// window.
+/// computed, made on first use, with a kernel for the whole grid; 8 bytes per computed cell from the first load that
+/// tilts, or presses several bodies; [snapshots](crate::contact::Snapshot); the old state during a step that moves to
+/// a larger window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Memory {
-    /// Cells that are computed: with [`Settings::symmetry`](crate::contact::Settings::symmetry) perhaps half or a quarter of the grid, with
+    /// Cells that are computed: with [`Settings::symmetry`](crate::contact::Settings::symmetry) perhaps half or a
+    /// quarter of the grid, with
     /// [`Settings::window`](crate::contact::Settings::window) at most.
     pub computed_cells: usize,
     /// Bytes of gap and pressure on the whole grid.
@@ -54,12 +55,14 @@ pub struct Memory {
     /// Bytes of the work space of the kernel, and of its spectrum, unless another contact with the same kernel has made
     /// that already.
     pub kernel: u64,
-    /// Bytes that each further step adds: fields of direct sums, up to [`Settings::history_limit`](crate::contact::Settings::history_limit).
+    /// Bytes that each further step adds: fields of direct sums, up to
+    /// [`Settings::history_limit`](crate::contact::Settings::history_limit).
     pub each_step: u64,
 }
 
 impl Memory {
-    /// All bytes of the contact as it is built, or, with [`Settings::window`](crate::contact::Settings::window), when its window has grown to the most.
+    /// All bytes of the contact as it is built, or, with [`Settings::window`](crate::contact::Settings::window), when
+    /// its window has grown to the most.
     pub fn total(&self) -> u64 {
         let Memory { grid, state, history, solver, kernel, .. } = *self;
         [grid, state, history, solver, kernel].into_iter().fold(0, u64::saturating_add)

@@ -109,14 +109,14 @@ impl Builder {
         Builder { counter_motion: Some(motion), ..self }
     }
 
-    /// The loading times \[s\] over which the material is needed, from the shortest that matters to the end of the scene,
-    /// both after the load first acts. Rheologies without an exact exponential series
-    /// ([`PowerLaw`](crate::rheology::PowerLaw), closures) cannot be built without it: their series is fitted over these
-    /// times to within [`Settings::series_tolerance`], and a step that ends later fails with
+    /// The loading times \[s\] over which the material is needed, from the shortest that matters to the end of the
+    /// scene, both after the load first acts. Rheologies without an exact exponential series
+    /// ([`PowerLaw`](crate::rheology::PowerLaw), closures) cannot be built without it: their series is fitted over
+    /// these times to within [`Settings::series_tolerance`], and a step that ends later fails with
     /// [`StepError::BeyondMaterial`](crate::contact::StepError::BeyondMaterial). All others ignore it.
     ///
-    /// The creep up to the shortest time counts as immediate, so that bodies without elastic response can start with a jump
-    /// of the load.
+    /// The creep up to the shortest time counts as immediate, so that bodies without elastic response can start with
+    /// a jump of the load.
     ///
     /// ```
     /// use viscocontact::prelude::*;
@@ -157,27 +157,30 @@ impl Builder {
         Builder { times: Some(Times::of_run(history, until)), ..self }
     }
 
-    /// A temperature that changes: all material then creeps in reduced time, ξ = ∫ dt/a_T(T(t)), with its times at the reference
-    /// temperature of the law. The times of [`Builder::times`] and [`StepError::BeyondMaterial`](crate::contact::StepError::BeyondMaterial) are
-    /// reduced times; [`Builder::times_of`] takes them from the run. A scene without one costs nothing more.
+    /// A temperature that changes: all material then creeps in reduced time, ξ = ∫ dt/a_T(T(t)), with its times at
+    /// the reference temperature of the law. The times of [`Builder::times`] and
+    /// [`StepError::BeyondMaterial`](crate::contact::StepError::BeyondMaterial) are reduced times;
+    /// [`Builder::times_of`] takes them from the run. A scene without one costs nothing more.
     ///
     /// A step fails where the temperature is outside the range of the law.
     pub fn temperature(self, history: TemperatureHistory) -> Builder {
         Builder { temperature: Some(history), ..self }
     }
 
-    /// The attraction between the surfaces: loads may then pull, and hold until the bodies separate ([`adhesion`](crate::adhesion)). A
-    /// scene without one costs nothing more.
+    /// The attraction between the surfaces: loads may then pull, and hold until the bodies separate
+    /// ([`adhesion`](crate::adhesion)). A scene without one costs nothing more.
     ///
     /// [`ViscoelasticContact::pressure`] is the pressure of the wall, [`Fields::traction_into`](crate::fields::Fields::traction_into) the net traction, which carries
-    /// the force and displaces the bodies. The whole grid is computed, [`Settings::window`] does not count. A contact that tries to come off
-    /// under a given force fails with [`AdhesionError::PulledOff`](crate::adhesion::AdhesionError::PulledOff); under a given approach or a
-    /// spring it comes off within a step.
+    /// the force and displaces the bodies. The whole grid is computed, [`Settings::window`] does not count. A contact
+    /// that tries to come off under a given force fails with
+    /// [`AdhesionError::PulledOff`](crate::adhesion::AdhesionError::PulledOff); under a given approach or a spring it
+    /// comes off within a step.
     ///
-    /// The mesh must resolve the zone in which the attraction acts, of the length E* ρ²/w, or E* over the steepest slope of the law if that is
-    /// less: with 4 cells in it the pull-off force of a sphere errs by up to 0.5 %, with 3 by up to 2.5 %, with 2 by up to 10 %. Below 4, at
-    /// the modulus that the body has reached, steps warn ([`Warnings::COARSE_ZONE`](crate::contact::Warnings::COARSE_ZONE)); below 2, at the modulus
-    /// at once, `build` fails. A longer range at the same work of separation needs fewer cells.
+    /// The mesh must resolve the zone in which the attraction acts, of the length E* ρ²/w, or E* over the steepest
+    /// slope of the law if that is less: with 4 cells in it the pull-off force of a sphere errs by up to 0.5 %, with
+    /// 3 by up to 2.5 %, with 2 by up to 10 %. Below 4, at the modulus that the body has reached, steps warn
+    /// ([`Warnings::COARSE_ZONE`](crate::contact::Warnings::COARSE_ZONE)); below 2, at the modulus at once, `build`
+    /// fails. A longer range at the same work of separation needs fewer cells.
     ///
     /// ```
     /// use viscocontact::adhesion::{ExponentialAttraction, tabor_number};
@@ -210,11 +213,11 @@ impl Builder {
         Builder { settings, ..self }
     }
 
-    /// The [ranks](crate::parallel) that share out the rows of the contact, each of which builds it from the same parts. Without
-    /// it, this process computes all of it.
+    /// The [ranks](crate::parallel) that share out the rows of the contact, each of which builds it from the same
+    /// parts. Without it, this process computes all of it.
     ///
-    /// Geometries given after this call are evaluated on the local rows alone; geometries before it on the whole grid, 8 bytes a
-    /// cell.
+    /// Geometries given after this call are evaluated on the local rows alone; geometries before it on the whole
+    /// grid, 8 bytes a cell.
     pub fn ranks(self, ranks: Arc<dyn Ranks>) -> Builder {
         Builder { ranks: Some(ranks), ..self }
     }

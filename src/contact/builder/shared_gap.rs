@@ -1,5 +1,5 @@
-//! The gap of a contact whose rows ranks share out. Each rank has the local rows of the whole grid; symmetry, datum and hull follow
-//! from the rows of all ranks.
+//! The gap of a contact whose rows ranks share out. Each rank has the local rows of the whole grid; symmetry, datum
+//! and hull follow from the rows of all ranks.
 
 use std::hash::{DefaultHasher, Hasher};
 
@@ -18,7 +18,8 @@ pub(in crate::contact) struct SharedGap<'a> {
 }
 
 impl SharedGap<'_> {
-    /// Checks the gap on the local rows, and finds the lowest gap of all rows. A call of all ranks, which get the same error.
+    /// Checks the gap on the local rows, and finds the lowest gap of all rows. A call of all ranks, which get the
+    /// same error.
     pub(in crate::contact) fn new<'a>(heights: &'a [f64], grid: &Grid, rows: &Rows) -> Result<SharedGap<'a>> {
         let n2 = grid.cells()[1];
         let invalid = heights.iter().position(|h| h.is_nan() || *h == f64::NEG_INFINITY);
@@ -35,8 +36,8 @@ impl SharedGap<'_> {
         Ok(SharedGap { rows: rows.clone(), heights, datum })
     }
 
-    /// Axes of an even number of cells about whose middle the gap is even. Rows whose mirror image another rank has are compared
-    /// by 64 bits of a hash. A call of all ranks.
+    /// Axes of an even number of cells about whose middle the gap is even. Rows whose mirror image another rank has
+    /// are compared by 64 bits of a hash. A call of all ranks.
     pub(in crate::contact) fn even_axes(&self) -> [bool; 2] {
         let SharedGap { rows, heights, datum } = self;
         let [n1, n2] = rows.cells();

@@ -1,5 +1,5 @@
-//! The fields of a state in a file: one after the other, each by the rows of the whole region. Rank 0 writes them, and the others
-//! bring their rows, some at a time; each rank reads its rows.
+//! The fields of a state in a file: one after the other, each by the rows of the whole region. Rank 0 writes them,
+//! and the others bring their rows, some at a time; each rank reads its rows.
 
 use std::io::{self, Write};
 use std::ops::Range;

@@ -1,5 +1,5 @@
-//! The file around its contents: a magic number, the version of the format, length, checksum. Contents are written and read
-//! as a stream: no copy of them is held.
+//! The file around its contents: a magic number, the version of the format, length, checksum. Contents are written
+//! and read as a stream: no copy of them is held.
 
 use std::cmp::Ordering;
 use std::fs::File;

@@ -92,8 +92,8 @@ pub(super) fn moved_indenter() -> CheckpointError {
     other_scene("indenter", "one that has moved or changed", "where it was built, as ranks need it")
 }
 
-/// Both clocks of a checkpoint must agree to this part: closures of a temperature have no other mark, and rough ones are integrated to
-/// five digits.
+/// Both clocks of a checkpoint must agree to this part: closures of a temperature have no other mark, and rough ones
+/// are integrated to five digits.
 const CLOCKS_AGREE: f64 = 1e-9;
 const CLOCKS_OF_CLOSURES_AGREE: f64 = 2e-5;
 

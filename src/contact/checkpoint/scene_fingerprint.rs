@@ -10,7 +10,8 @@ use crate::contact::{Scene, Settings};
 use crate::error::CheckpointError;
 use crate::rounded::texts_without_noise;
 
-/// Numbers of two scenes are the same if they differ by no more than this part: mathematical libraries round differently.
+/// Numbers of two scenes are the same if they differ by no more than this part: mathematical libraries round
+/// differently.
 const RELATIVE_TOLERANCE: f64 = 1e-9;
 /// Traction and energy of an attraction at some gaps.
 fn of_attraction(law: &dyn Attraction) -> Vec<f64> {

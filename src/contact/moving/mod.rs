@@ -17,8 +17,8 @@ impl ViscoelasticContact {
     /// and touch the new one from the next step on.
     ///
     /// # Errors
-    /// If a gap is NaN or −∞, or none is finite, or there are several rigid bodies, or the new gap breaks a symmetry and there is
-    /// no memory for the mirror images. The contact then keeps the old indenter.
+    /// If a gap is NaN or −∞, or none is finite, or there are several rigid bodies, or the new gap breaks a symmetry
+    /// and there is no memory for the mirror images. The contact then keeps the old indenter.
     pub fn set_geometry(&mut self, geometry: &dyn Geometry) -> Result<()> {
         self.set_geometries(&[geometry])
     }
@@ -53,8 +53,8 @@ impl ViscoelasticContact {
     }
 
     /// Takes a step in which the indenter and the grid move over the bodies by whole cells along x1 and x2: the
-    /// material under the cell `[i, j] + cells` moves under `[i, j]`. All rigid bodies move alike. At a velocity v along x1, one cell per step takes
-    /// dt = Δ1/v.
+    /// material under the cell `[i, j] + cells` moves under `[i, j]`. All rigid bodies move alike. At a velocity v
+    /// along x1, one cell per step takes dt = Δ1/v.
     ///
     /// Undisturbed material enters across one edge of the grid; on periodic bodies, material that leaves at one edge
     /// enters at the other. Otherwise the history of material that leaves is dropped: the grid should be long enough

@@ -28,12 +28,12 @@ impl Shortfall<'_> {
         usize::from(self.cell[0] == 0)
     }
 
-    /// The change that the bodies on the grid have still to go through under the present pressure, relative to approach and lateral
-    /// force. A change δu of the displacement lifts the indenter by its mean over the pressure, and changes the lateral force by the
-    /// pressure on its slope.
+    /// The change that the bodies on the grid have still to go through under the present pressure, relative to
+    /// approach and lateral force. A change δu of the displacement lifts the indenter by its mean over the pressure,
+    /// and changes the lateral force by the pressure on its slope.
     ///
-    /// It is the sum over all waves and terms of creep of what each is short of its limit. Absolute values are taken cell by cell:
-    /// what is left of a slow term passes through the contact, and its mean through zero.
+    /// It is the sum over all waves and terms of creep of what each is short of its limit. Absolute values are taken
+    /// cell by cell: what is left of a slow term passes through the contact, and its mean through zero.
     pub(crate) fn outstanding(&mut self) -> f64 {
         let Computation { state, window, .. } = &mut self.contact.computation;
         let pressure = &state.held.current.solution.pressure;
@@ -43,8 +43,9 @@ impl Shortfall<'_> {
         self.relative(self.change_by(&change, f64::abs))
     }
 
-    /// The term of creep that is farthest from its limit after a distance \[m\]: its time \[s\], and the distance \[m\] in which what is left falls by the
-    /// factor e. Where the bodies do not come round, nothing is left after one length of the grid.
+    /// The term of creep that is farthest from its limit after a distance \[m\]: its time \[s\], and the distance
+    /// \[m\] in which what is left falls by the factor e. Where the bodies do not come round, nothing is left after
+    /// one length of the grid.
     pub(crate) fn slowest(&self, distance: f64) -> (f64, f64) {
         let (axis, grid) = (self.axis(), self.contact.grid());
         let most =
@@ -59,14 +60,14 @@ impl Shortfall<'_> {
         time * self.contact.grid().spacing()[self.axis()] / self.contact.computation.state.clock.last_dt
     }
 
-    /// Why the motion has not arrived, if pressures whose traces have left the grid could change approach or lateral force by more
-    /// than the `tolerance`.
+    /// Why the motion has not arrived, if pressures whose traces have left the grid could change approach or lateral
+    /// force by more than the `tolerance`.
     ///
-    /// At a distance s behind it a load W leaves the sources Σ C_k W e^(−s/l_k)/l_k ds, l_k = v λ_k. Those beyond the edge, at D
-    /// behind the end of the contact, would lift the contact and tilt it. As their influence falls as 1/s, and its slope as 1/s², the
-    /// exponential integrals E1(D/l_k) and E2(D/l_k) result; in line contact, of the slope 1/s, E1 for the tilt. Upper bounds of
-    /// elementary functions take their place. From the end of the contact on, at most the whole load counts: the bound is 1.2 to 3
-    /// times what is missing where v λ is longer than the grid.
+    /// At a distance s behind it a load W leaves the sources Σ C_k W e^(−s/l_k)/l_k ds, l_k = v λ_k. Those beyond the
+    /// edge, at D behind the end of the contact, would lift the contact and tilt it. As their influence falls as 1/s,
+    /// and its slope as 1/s², the exponential integrals E1(D/l_k) and E2(D/l_k) result; in line contact, of the slope
+    /// 1/s, E1 for the tilt. Upper bounds of elementary functions take their place. From the end of the contact on,
+    /// at most the whole load counts: the bound is 1.2 to 3 times what is missing where v λ is longer than the grid.
     pub(crate) fn left_grid(&self, tolerance: f64) -> Option<Unsteady> {
         let (axis, contact) = (self.axis(), &*self.contact);
         let (side, count, kernel) =

@@ -7,13 +7,13 @@ use crate::hereditary::BranchEnergies;
 use crate::load::{Load, Tilt};
 use crate::rounded::rounded;
 
-/// A step whose work the forces at its ends do not tell to this part of the energy, or of the work of separation of so many cells, is looked at in parts, as far as to a
-/// sixteenth of it.
+/// A step whose work the forces at its ends do not tell to this part of the energy, or of the work of separation of
+/// so many cells, is looked at in parts, as far as to a sixteenth of it.
 const INEXACT: f64 = 1e-3;
 const CELLS: f64 = 10.0;
 const HALVINGS: u32 = 4;
-/// A step whose balance is off by more than this part of the energies is divided, and its parts are by their share of it, as far as to a 256th
-/// of the step: a pull-off within one takes about as many.
+/// A step whose balance is off by more than this part of the energies is divided, and its parts are by their share of
+/// it, as far as to a 256th of the step: a pull-off within one takes about as many.
 const UNBALANCED: f64 = 5e-3;
 const MOST_HALVINGS: u32 = 8;
 /// A balance that is off by more than this part of the energies warns.
@@ -21,21 +21,23 @@ const WRONG: f64 = 0.05;
 
 /// Follows what the load of a contact does, and what the bodies store and dissipate of it.
 ///
-/// The bodies are springs and dashpots in every cell: the branches of their generalized Maxwell model, each driven by the displacement and by
-/// the tractions. What the springs store and the dashpots dissipate follows from these fields, not from the balance, whose
-/// [imbalance](Energies::imbalance) shows the error of the steps: of second order in their length. The work of the load is ∫ F dδ + ∫ M dα, by
-/// the mean of force and moment over each step. A step that is so long that its balance is off by more than 0.5 % of the energies, as where a fast
-/// pull-off lies within it, is computed again in parts, in a copy of the contact, as far as to a 256th of it; what is still off is the
-/// imbalance, of which [`Energies::warning`] warns. In a step of length zero bodies answer elastically, and its work is what they store and lose.
-/// Where surfaces attract each other, the energy of the attraction is stored too; the bodies come from far apart in the first step, whose work is
-/// what becomes of it, too; and steps with
+/// The bodies are springs and dashpots in every cell: the branches of their generalized Maxwell model, each driven by
+/// the displacement and by the tractions. What the springs store and the dashpots dissipate follows from these
+/// fields, not from the balance, whose [imbalance](Energies::imbalance) shows the error of the steps: of second order
+/// in their length. The work of the load is ∫ F dδ + ∫ M dα, by the mean of force and moment over each step. A step
+/// that is so long that its balance is off by more than 0.5 % of the energies, as where a fast pull-off lies within
+/// it, is computed again in parts, in a copy of the contact, as far as to a 256th of it; what is still off is the
+/// imbalance, of which [`Energies::warning`] warns. In a step of length zero bodies answer elastically, and its work
+/// is what they store and lose. Where surfaces attract each other, the energy of the attraction is stored too; the
+/// bodies come from far apart in the first step, whose work is what becomes of it, too; and steps with
 /// [`Warnings::JUMP`] lose [`PassReport::released`](crate::contact::PassReport::released). Beside a jump the force leaves every polynomial: where the forces at both ends
-/// of a step do not tell its work, the step is computed again in parts, in a copy of the contact, whose work and losses count.
+/// of a step do not tell its work, the step is computed again in parts, in a copy of the contact, whose work and
+/// losses count.
 ///
-/// Two fields for each relaxation time and eight more are kept, 8 bytes a cell each, and where surfaces attract each other the contact at the
-/// end of the step before; a step costs as many products, far less than the step of
-/// the contact, and with [`Settings::window`](crate::contact::Settings::window) a convolution on the whole grid. Lateral forces of an indenter
-/// that moves along a path do work that is not counted.
+/// Two fields for each relaxation time and eight more are kept, 8 bytes a cell each, and where surfaces attract each
+/// other the contact at the end of the step before; a step costs as many products, far less than the step of the
+/// contact, and with [`Settings::window`](crate::contact::Settings::window) a convolution on the whole grid. Lateral
+/// forces of an indenter that moves along a path do work that is not counted.
 ///
 /// ```
 /// use viscocontact::contact::EnergyBalance;
@@ -58,7 +60,8 @@ const WRONG: f64 = 0.05;
 /// # Ok::<(), Error>(())
 /// ```
 ///
-/// In a [`CsvHistory`](crate::output::CsvHistory), [`EnergyBalance::COLUMNS`] name the columns, and [`Energies::values`] fill them.
+/// In a [`CsvHistory`](crate::output::CsvHistory), [`EnergyBalance::COLUMNS`] name the columns, and
+/// [`Energies::values`] fill them.
 #[derive(Debug, Clone)]
 pub struct EnergyBalance {
     branches: BranchEnergies,
@@ -71,7 +74,8 @@ pub struct EnergyBalance {
     gap: Vec<f64>,
     /// Whether the bodies have yet to come from far apart.
     far_apart: bool,
-    /// The contact at the end of the step recorded last, where surfaces attract each other: adaptive steps consist of two there.
+    /// The contact at the end of the step recorded last, where surfaces attract each other: adaptive steps consist of
+    /// two there.
     last: Option<Box<ViscoelasticContact>>,
 }
 
@@ -101,8 +105,8 @@ impl Energies {
         self.work - self.stored - self.viscous - self.lost
     }
 
-    /// A warning where the imbalance is more than 5 % of the energies, with its number and the remedy. That it is less does not show that each
-    /// of them is as accurate: with the tolerance of a run they converge.
+    /// A warning where the imbalance is more than 5 % of the energies, with its number and the remedy. That it is
+    /// less does not show that each of them is as accurate: with the tolerance of a run they converge.
     pub fn warning(&self) -> Option<String> {
         let (off, whole) = (self.imbalance(), self.size());
         let off_by = || {
@@ -127,9 +131,9 @@ impl EnergyBalance {
     /// A balance that begins with undisturbed bodies, before the first step of their contact.
     ///
     /// # Errors
-    /// If steps were taken, there are several rigid bodies, [ranks](crate::parallel) share out the rows, the bodies move under the grid
-    /// ([`Frame::Indenter`](crate::contact::Frame::Indenter)), or their material has no exponential series ([`Material::fitted`](crate::rheology::Material::fitted) gives it
-    /// one).
+    /// If steps were taken, there are several rigid bodies, [ranks](crate::parallel) share out the rows, the bodies
+    /// move under the grid ([`Frame::Indenter`](crate::contact::Frame::Indenter)), or their material has no
+    /// exponential series ([`Material::fitted`](crate::rheology::Material::fitted) gives it one).
     pub fn new(contact: &ViscoelasticContact) -> Result<EnergyBalance> {
         contact.covers(coverage::ENERGIES)?;
         let cells = contact.grid().len();
@@ -169,8 +173,8 @@ impl EnergyBalance {
         Ok(self.energies)
     }
 
-    /// Takes in a step of length `dt` from the contact `before` it, which the contact itself may know: if its work is not known, or its
-    /// balance is off, in halves, and halves of halves, so many times.
+    /// Takes in a step of length `dt` from the contact `before` it, which the contact itself may know: if its work is
+    /// not known, or its balance is off, in halves, and halves of halves, so many times.
     fn take_in(
         &mut self,
         (before, contact): (Option<&ViscoelasticContact>, &ViscoelasticContact),
@@ -266,8 +270,9 @@ impl EnergyBalance {
         self.take_in((None, part), dt, jumped, halvings)
     }
 
-    /// Force and moments at the beginning and at the end of the motion in a step with a jump, which is at its end: what is released belongs to
-    /// the load there. So a given motion is over before the jump, and what the load leaves free moves under the load of the end.
+    /// Force and moments at the beginning and at the end of the motion in a step with a jump, which is at its end:
+    /// what is released belongs to the load there. So a given motion is over before the jump, and what the load
+    /// leaves free moves under the load of the end.
     fn ends_of_jump(&self, contact: &ViscoelasticContact, pushed: &[f64; 3]) -> [[f64; 3]; 2] {
         let load = contact.load();
         let is_given = |k: usize| match (k, load) {

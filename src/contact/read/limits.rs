@@ -25,7 +25,8 @@ impl Limits {
         Limits { known_until: material.known_until(), measured: material.measured(), is_uncertain, modulus }
     }
 
-    /// Rejects a step to a `time` at which bodies that were ever `touched` have a loading time, their `age`, for which the material is not known.
+    /// Rejects a step to a `time` at which bodies that were ever `touched` have a loading time, their `age`, for
+    /// which the material is not known.
     pub(crate) fn check_age(&self, time: f64, age: f64, touched: bool) -> Result<()> {
         let known_until = self.known_until;
         if !touched || is_known(age, known_until) {

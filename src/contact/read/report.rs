@@ -17,8 +17,9 @@ pub struct StepReport {
     pub force: f64,
     /// Rigid-body approach ω of the first body, at the origin \[m\].
     pub approach: f64,
-    /// Cells in contact; [`ViscoelasticContact::contact_area`](crate::ViscoelasticContact::contact_area) resolves fractions of a cell.
-    /// On elastic states the cells of the state at or below the level, 0 where they were not swept on cells.
+    /// Cells in contact; [`ViscoelasticContact::contact_area`](crate::ViscoelasticContact::contact_area) resolves
+    /// fractions of a cell. On elastic states the cells of the state at or below the level, 0 where they were not
+    /// swept on cells.
     pub contact_cells: usize,
     /// Tilt (α1, α2) of the first body \[rad\].
     pub tilt: [f64; 2],
@@ -41,8 +42,8 @@ pub struct StepReport {
     pub fallback_iterations: usize,
     /// Convolutions with the influence kernel on the computed cells: forward and inverse padded transforms.
     pub convolutions: usize,
-    /// Applications of the preconditioner, and where surfaces attract each other of the near field of the kernel, each on an unpadded grid of a
-    /// quarter of the size.
+    /// Applications of the preconditioner, and where surfaces attract each other of the near field of the kernel,
+    /// each on an unpadded grid of a quarter of the size.
     pub preconditioner_applications: usize,
     /// Residual reached, in the measure of [`Settings::tolerance`](crate::contact::Settings::tolerance).
     pub residual: f64,
@@ -57,8 +58,8 @@ pub enum Estimated {
     Approach,
     /// The force, under a given approach.
     Force,
-    /// The approach or the force, whichever errs more: under springs, and where some bodies have a given force and others a given
-    /// approach.
+    /// The approach or the force, whichever errs more: under springs, and where some bodies have a given force and
+    /// others a given approach.
     ApproachOrForce,
 }
 
@@ -109,7 +110,8 @@ impl StepReport {
         self.figures.messages(self.warnings, self.time_error)
     }
 
-    /// Warns at the end of a run that never brought the bodies into contact; upright they touch at the approach `touch`.
+    /// Warns at the end of a run that never brought the bodies into contact; upright they touch at the approach
+    /// `touch`.
     pub(crate) fn warn_of_no_contact(&mut self, touch: f64) {
         if self.estimated != Estimated::Approach {
             self.warnings |= Warnings::NO_CONTACT;

@@ -55,8 +55,9 @@ impl StressHistory {
     /// undisturbed: call it before the first load.
     ///
     /// # Errors
-    /// If the bodies are pressed already, the grid follows the indenter ([`Frame::Indenter`](crate::contact::Frame::Indenter)), so that the bodies move under
-    /// it, the stress in the body is not known ([`KernelError::NoStress`](crate::KernelError::NoStress)), or there is not enough memory.
+    /// If the bodies are pressed already, the grid follows the indenter
+    /// ([`Frame::Indenter`](crate::contact::Frame::Indenter)), so that the bodies move under it, the stress in the
+    /// body is not known ([`KernelError::NoStress`](crate::KernelError::NoStress)), or there is not enough memory.
     pub fn new<'a>(contact: impl Into<Fields<'a>>) -> Result<StressHistory> {
         StressHistory::of_body(contact.into(), 0)
     }
@@ -83,8 +84,8 @@ impl StressHistory {
         Ok(StressHistory { grid, time, law, branches, pressure })
     }
 
-    /// Takes in the step that the contact has made since the last call. Between two calls the pressure counts as linear in
-    /// time, and as a jump if no time has passed.
+    /// Takes in the step that the contact has made since the last call. Between two calls the pressure counts as
+    /// linear in time, and as a jump if no time has passed.
     ///
     /// # Errors
     /// If the contact has another grid, or its time is earlier than in the last call.

@@ -9,8 +9,8 @@ use crate::equilibrium::{Equilibrium, Held, Indenter, Region};
 use crate::hereditary::{Field, History, Interpolant, Interval};
 use crate::load::Load;
 
-/// The state of a contact between two steps. A clone of it is a snapshot, its bytes are a checkpoint, and a step that is
-/// tried on a larger region changes a copy.
+/// The state of a contact between two steps. A clone of it is a snapshot, its bytes are a checkpoint, and a step that
+/// is tried on a larger region changes a copy.
 #[derive(Debug)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct State {
@@ -25,7 +25,8 @@ pub(crate) struct State {
     /// At the start of the last step.
     pub(crate) previous: Equilibrium,
     pub(crate) start: StepStart,
-    /// The greatest means of displacement and v over the contact so far: errors of smaller ones are relative to parts of these.
+    /// The greatest means of displacement and v over the contact so far: errors of smaller ones are relative to parts
+    /// of these.
     pub(crate) greatest: [f64; 2],
 }
 

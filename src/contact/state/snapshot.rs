@@ -8,11 +8,12 @@ use crate::error::{Error, Result, within};
 use crate::load::{Load, Tilt, load_point};
 
 /// What is left of the last step where its start is lost.
-const START_LOST: &str = "the end of that step, whose start is lost once another step was tried, even if that one failed, and where the indenter moved: look inside a step before the next, or restore a snapshot and step again";
+const START_LOST: &str = "the end of that step, whose start is lost once another step was tried, even if that one \
+    failed, and where the indenter moved: look inside a step before the next, or restore a snapshot and step again";
 
-/// The state of a contact in memory, made by [`ViscoelasticContact::snapshot`]: what steps change, without kernel and work
-/// space. About 48 bytes per computed cell and what the history takes ([`Memory`](crate::contact::Memory)); where a window is
-/// computed, 16 and the history again.
+/// The state of a contact in memory, made by [`ViscoelasticContact::snapshot`]: what steps change, without kernel and
+/// work space. About 48 bytes per computed cell and what the history takes ([`Memory`](crate::contact::Memory));
+/// where a window is computed, 16 and the history again.
 #[derive(Clone)]
 pub struct Snapshot {
     scene: Arc<Scene>,
@@ -66,9 +67,9 @@ impl ViscoelasticContact {
         }
     }
 
-    /// Goes back to a state, with the indenter where it was then: the steps that follow are the same as they were, bitwise. A
-    /// run of adaptive steps ([`ViscoelasticContact::follow`]) begins anew, with steps of its own. Allocates nothing while the
-    /// region that is computed stays the same and no direct sum grows.
+    /// Goes back to a state, with the indenter where it was then: the steps that follow are the same as they were,
+    /// bitwise. A run of adaptive steps ([`ViscoelasticContact::follow`]) begins anew, with steps of its own.
+    /// Allocates nothing while the region that is computed stays the same and no direct sum grows.
     ///
     /// # Errors
     /// If the snapshot was made of another contact; a contact and its clones may exchange theirs.
@@ -89,12 +90,13 @@ impl ViscoelasticContact {
 }
 
 impl ViscoelasticContact {
-    /// The contact at a time within the last step, its ends included. So a user may look at other times than the ends of
-    /// steps.
+    /// The contact at a time within the last step, its ends included. So a user may look at other times than the ends
+    /// of steps.
     ///
-    /// It is the contact at the start of the step, advanced by a shorter step of the same rule: its state is as exact as one at
-    /// the end of a step. This contact stays as it is. The load is taken to be linear between the ends of the step; a run has
-    /// the loads in between, and [`Run::within_step`](crate::run::Run::within_step) takes them from there.
+    /// It is the contact at the start of the step, advanced by a shorter step of the same rule: its state is as exact
+    /// as one at the end of a step. This contact stays as it is. The load is taken to be linear between the ends of
+    /// the step; a run has the loads in between, and [`Run::within_step`](crate::run::Run::within_step) takes them
+    /// from there.
     ///
     /// This costs a copy of the contact and a contact problem. Where ranks share out the contact, all of them call it.
     ///

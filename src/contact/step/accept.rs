@@ -8,8 +8,8 @@ use crate::equilibrium::{Figures, TimeRule, Warnings};
 use crate::extent::Extent;
 
 impl Computation {
-    /// Makes the trial the state; `sum` is Σ p, `contact_cells` is the number of pressed cells of the region, and `sizes` are the
-    /// means of displacement and v in contact.
+    /// Makes the trial the state; `sum` is Σ p, `contact_cells` is the number of pressed cells of the region, and
+    /// `sizes` are the means of displacement and v in contact.
     pub(super) fn accept(&mut self, step: Step<'_>, sum: f64, contact_cells: usize, sizes: [f64; 2]) {
         let Computation { state, trial, .. } = self;
         let interval = step.interval;

@@ -5,17 +5,19 @@ use crate::contact::Scene;
 use crate::equilibrium::Region;
 use crate::solver::Solution;
 
-/// Attraction beyond the edge that pulls by more than this part of the force is refused, and warned of from this part, or the tolerance of the solver, on.
+/// Attraction beyond the edge that pulls by more than this part of the force is refused, and warned of from this
+/// part, or the tolerance of the solver, on.
 pub(super) const MOST: f64 = 0.05;
 const LEAST: f64 = 1e-3;
 /// The rate at which attraction falls towards an edge is taken over this part of the grid.
 const PART: usize = 16;
 
-/// The force that the attraction beyond the edge of the grid would add, over the sum of the tractions on the grid, or over the work of separation of a length
-/// of the grid where this is more: about the force that pulls off a ball of its size.
+/// The force that the attraction beyond the edge of the grid would add, over the sum of the tractions on the grid, or
+/// over the work of separation of a length of the grid where this is more: about the force that pulls off a ball of
+/// its size.
 ///
-/// Over the lines of cells beside an edge the attraction falls at some rate, at which it is continued, over no more than half a length of the grid:
-/// a surface that stays as near ends somewhere.
+/// Over the lines of cells beside an edge the attraction falls at some rate, at which it is continued, over no more
+/// than half a length of the grid: a surface that stays as near ends somewhere.
 pub(super) fn attraction_beyond(scene: &Scene, law: &dyn Attraction, region: &Region, solution: &Solution) -> f64 {
     let (s, mut beyond) = (&solution.attraction, 0.0);
     let (cells, rows, periodic) = (region.cells(), region.rows(), scene.ground.kernel.periodic_axes());

@@ -19,16 +19,17 @@ impl Computation {
         released && trial.free[body].translation
     }
 
-    /// By what errors are weighted: the pressure at the end of the step tried, at its start, and at the start of the step before, or the net
-    /// traction where surfaces attract each other.
+    /// By what errors are weighted: the pressure at the end of the step tried, at its start, and at the start of the
+    /// step before, or the net traction where surfaces attract each other.
     fn weights(&self) -> [&[f64]; 3] {
         let Computation { state, trial, attracted, .. } = self;
         let solutions = [&trial.solution, &state.held.current.solution, &state.previous.solution];
         attracted.as_ref().map_or(solutions.map(|solution| &solution.pressure[..]), |own| own.weights())
     }
 
-    /// By how much the body above a cell advances in the step tried. A body that nothing pressed `rests_at` such an approach, from
-    /// the datum of the gap; NaN if that is not known. One that a spring lowers onto the surface advances at the rate that it has from then on.
+    /// By how much the body above a cell advances in the step tried. A body that nothing pressed `rests_at` such an
+    /// approach, from the datum of the gap; NaN if that is not known. One that a spring lowers onto the surface
+    /// advances at the rate that it has from then on.
     fn advance(&self, step: &Step<'_>, rests_at: Option<f64>, k: usize) -> f64 {
         let Computation { state, window, trial, .. } = self;
         let body = window.gap(&step.indenter).owner(k);
@@ -44,8 +45,8 @@ impl Computation {
         RigidMotion { approach, tilt }.at(state.held.region.center(k))
     }
 
-    /// The part of the step tried in which a body touches a surface at this approach, from the datum of the gap: all of it where it lies on the
-    /// surface. A body apart is where the far end of its spring is.
+    /// The part of the step tried in which a body touches a surface at this approach, from the datum of the gap: all
+    /// of it where it lies on the surface. A body apart is where the far end of its spring is.
     fn since_touch(&self, step: &Step<'_>, body: usize, surface: f64) -> f64 {
         let (start, surface) = (self.state.held.current.motions[body].approach, step.indenter.gap().datum + surface);
         match step.loads[body] {
@@ -61,7 +62,8 @@ fn first_touch(tried: &Computation, gap: &[f64]) -> f64 {
     tried.state.held.region.rows().least(surface.fold(f64::INFINITY, f64::min))
 }
 
-/// A direct sum assigns an increment to one end of its step: on average the response is half a step too early or too late.
+/// A direct sum assigns an increment to one end of its step: on average the response is half a step too early or too
+/// late.
 const SHARE_OF_DIRECT_SUM: f64 = 0.5;
 
 /// A body that comes back to a surface, however slowly, meets it with the modulus of this time, in times that matter.
@@ -75,9 +77,9 @@ pub(crate) fn least_sizes(state: &State, outlook: &StepContext) -> [f64; 2] {
     [0, 1].map(|which| SMALL[which] * outlook.expected[which].max(state.greatest[which]))
 }
 
-/// The estimated error in time of the step that was `tried`: under a given force relative to the mean displacement in contact, under a
-/// given motion to the mean of v = K p, both weighted by the pressure. Where they are small, it is relative to the parts [`SMALL`] of the
-/// greatest of the run, expected ones included.
+/// The estimated error in time of the step that was `tried`: under a given force relative to the mean displacement in
+/// contact, under a given motion to the mean of v = K p, both weighted by the pressure. Where they are small, it is
+/// relative to the parts [`SMALL`] of the greatest of the run, expected ones included.
 pub(crate) fn error_in_time(scene: &Scene, tried: &Computation, step: &Step<'_>, outlook: &StepContext) -> TimeError {
     let StepContext { expected, on_switch: [one, all], agreement, steps, length_is_given, .. } = *outlook;
     let (Computation { state, trial, .. }, interval) = (tried, step.interval);
@@ -146,11 +148,12 @@ const TIMES: i32 = 60;
 /// The approach of a paraboloid under a given force is this power of the compliance; of a punch, the first.
 const POWER: f64 = 2.0 / 3.0;
 
-/// The error of the displacement, relative to its mean in contact, of the first step after a jump or a corner of the load.
+/// The error of the displacement, relative to its mean in contact, of the first step after a jump or a corner of the
+/// load.
 ///
-/// To a v that jumps by V₀ at the start of the step, and changes by V₁ on it, undisturbed bodies respond with C(Δ) V₀ + C̄ V₁,
-/// where C̄ is the mean of C over the step, and the rule with responses of its own. Means over the contact, weighted by the
-/// pressure. The creep of what pressed the bodies before is taken to be followed.
+/// To a v that jumps by V₀ at the start of the step, and changes by V₁ on it, undisturbed bodies respond with C(Δ)
+/// V₀ + C̄ V₁, where C̄ is the mean of C over the step, and the rule with responses of its own. Means over the
+/// contact, weighted by the pressure. The creep of what pressed the bodies before is taken to be followed.
 pub(super) fn first_step_error(scene: &Scene, tried: &Computation, step: &Step<'_>, least: f64) -> f64 {
     let (Computation { state, trial, .. }, dt) = (tried, step.interval.dt);
     let Some([held, grown]) = state.history.exponential_rule().and_then(|rule| rule.first_step_responses()) else {

@@ -10,8 +10,8 @@ use crate::solver::PENETRATION_SLACK;
 /// Rounding of the gap of a cell, relative to its summands.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-/// Writes the end of a jump of compliance 0 to the trial; the displacement stays. The pressure stays if it satisfies the
-/// loads, else it vanishes if zero pressure satisfies them. Other loads are rejected.
+/// Writes the end of a jump of compliance 0 to the trial; the displacement stays. The pressure stays if it satisfies
+/// the loads, else it vanishes if zero pressure satisfies them. Other loads are rejected.
 pub(super) fn jump_without_response(
     state: &State,
     window: &mut Window,
@@ -37,8 +37,8 @@ pub(super) fn jump_without_response(
     Ok(())
 }
 
-/// The residual of the load of `body` at an unchanged displacement, under the present pressure (`pressed`) or none: gap and
-/// penetration relative to the displacement in contact, force and moments relative to the force.
+/// The residual of the load of `body` at an unchanged displacement, under the present pressure (`pressed`) or none:
+/// gap and penetration relative to the displacement in contact, force and moments relative to the force.
 fn residual(state: &State, initial: &Gap, trial: &Trial, step: &Step<'_>, body: usize, pressed: bool) -> f64 {
     let freedom = trial.free[body];
     let (modes, motion) = (state.held.region.modes(freedom), trial.solution.motions[body]);

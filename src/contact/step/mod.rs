@@ -10,10 +10,11 @@
 //! | displacement at the end of the step | [`History::respond`](crate::hereditary::History::respond) |
 //! | pressure and displacement kept for the steps to come (Eq. 11); next step | [`ViscoelasticContact::accept`] |
 //!
-//! Beyond the paper, a step checks whether the bodies might touch outside the computed region. If so, it continues in a copy
-//! of the state on a larger region ([`outgrown`]). A step writes to its trial, to the window, to this copy, and to the part of the
-//! history reserved for steps. The state changes when the step is accepted ([`ViscoelasticContact::adopt`]): after a failed step it is
-//! what it was, but for the start of the step before, which [`ViscoelasticContact::within_step`] would need.
+//! Beyond the paper, a step checks whether the bodies might touch outside the computed region. If so, it continues in
+//! a copy of the state on a larger region ([`outgrown`]). A step writes to its trial, to the window, to this copy,
+//! and to the part of the history reserved for steps. The state changes when the step is accepted
+//! ([`ViscoelasticContact::adopt`]): after a failed step it is what it was, but for the start of the step before,
+//! which [`ViscoelasticContact::within_step`] would need.
 
 mod accept;
 pub(in crate::contact) mod attraction;
@@ -59,10 +60,10 @@ pub(crate) struct Attempt {
 }
 
 impl ViscoelasticContact {
-    /// Advances by `dt` \[s\] to a state that carries `loads`: one [`Load`], or a load for each rigid body in the order in which
-    /// the builder was given them. `dt` = 0 is a jump of the load: the bodies respond
-    /// elastically. A body without elastic response (J(0) = 0) keeps its displacement in a jump. It accepts jumps to zero
-    /// pressure, and jumps to a load that the present pressure satisfies to within
+    /// Advances by `dt` \[s\] to a state that carries `loads`: one [`Load`], or a load for each rigid body in the
+    /// order in which the builder was given them. `dt` = 0 is a jump of the load: the bodies respond elastically. A
+    /// body without elastic response (J(0) = 0) keeps its displacement in a jump. It accepts jumps to zero pressure,
+    /// and jumps to a load that the present pressure satisfies to within
     /// [`Settings::tolerance`](crate::contact::Settings::tolerance), such as the present approach in place of the force.
     ///
     /// ```
@@ -80,12 +81,14 @@ impl ViscoelasticContact {
     /// ```
     ///
     /// # Errors
-    /// If `dt` or a force is negative, a number not finite, a force acts where it would topple the body, `dt` = 0 and the body
-    /// has no elastic response for the pressure that the load needs, contact reaches the edge of the grid (unless
+    /// If `dt` or a force is negative, a number not finite, a force acts where it would topple the body, `dt` = 0 and
+    /// the body has no elastic response for the pressure that the load needs, contact reaches the edge of the grid
+    /// (unless
     /// [`Edge::Allow`](crate::contact::Edge::Allow)), the solver does not converge, a creep closure returns an impossible
-    /// value, the material is not known for so long a time, a direct sum has filled its memory, there is no memory for the
-    /// cells that the contact reaches ([`Error::OutOfMemory`]), or there is not one load per body. The contact is then
-    /// unchanged, except that [`ViscoelasticContact::within_step`] has lost the start of the last step.
+    /// value, the material is not known for so long a time, a direct sum has filled its memory, there is no memory
+    /// for the cells that the contact reaches ([`Error::OutOfMemory`]), or there is not one load per body. The
+    /// contact is then unchanged, except that [`ViscoelasticContact::within_step`] has lost the start of the last
+    /// step.
     pub fn step(&mut self, dt: f64, loads: impl AsRef<[Load]>) -> Result<StepReport> {
         self.next(None, dt, loads.as_ref())
     }
@@ -229,8 +232,8 @@ impl ViscoelasticContact {
         }
     }
 
-    /// Makes an attempt the state, without a report; `sizes` are the mean displacement and the mean v in contact. Returns
-    /// where it presses.
+    /// Makes an attempt the state, without a report; `sizes` are the mean displacement and the mean v in contact.
+    /// Returns where it presses.
     pub(crate) fn adopt(&mut self, attempt: Attempt, step: Step<'_>, sizes: [f64; 2]) -> Result<Pressed> {
         // all exchanges with other ranks precede the change of the state
         let Computation { state, trial, .. } = attempt.computation(&self.computation);
@@ -276,8 +279,8 @@ fn compute(
     solve_on_growing_region(ground, own, larger, placed, (scene, step))
 }
 
-/// Rejects a step beyond the loading times for which the material is known. Bodies that were never `touched` have no loading
-/// time.
+/// Rejects a step beyond the loading times for which the material is known. Bodies that were never `touched` have no
+/// loading time.
 fn material_is_known(scene: &Scene, state: &State, step: &Step<'_>, touched: bool) -> Result<()> {
     let Interval { time, reduced, .. } = step.interval;
     scene.limits.check_age(time, reduced - state.clock.undisturbed_until, touched)

@@ -4,19 +4,21 @@ use crate::contact::{State, Step};
 use crate::equilibrium::{Equilibrium, Trial, Window};
 use crate::parallel::{Rows, for_each_band};
 
-/// Least distance, in cells, by which the edge of the contact must be expected to move for the next contact to be predicted.
+/// Least distance, in cells, by which the edge of the contact must be expected to move for the next contact to be
+/// predicted.
 const MIN_EDGE_SPEED: f64 = 0.5;
 
-/// Least share of the cells in contact, now and in the next step, that must stay in contact: the law of the edge does not cover
-/// the cells far from it.
+/// Least share of the cells in contact, now and in the next step, that must stay in contact: the law of the edge does
+/// not cover the cells far from it.
 const MIN_SHARE_STAYING: f64 = 0.5;
 
-/// Finds the cells that are likely to be in contact at the end of a step a times as long as the last one. At a moving edge the
-/// pressure goes to zero like the root of the distance, and the gap opens like its power 3/2 (Hertz): a pressure that fell to
-/// less than √(a/(1 + a)) of itself vanishes, a gap that fell to less than the third power of this factor closes.
+/// Finds the cells that are likely to be in contact at the end of a step a times as long as the last one. At a moving
+/// edge the pressure goes to zero like the root of the distance, and the gap opens like its power 3/2 (Hertz): a
+/// pressure that fell to less than √(a/(1 + a)) of itself vanishes, a gap that fell to less than the third power of
+/// this factor closes.
 ///
-/// False if the last two gaps are not known, if most cells would join or leave, or if the edge moves so slowly that single
-/// cells join: their gaps fall evenly until they touch, which the extrapolated pressure predicts by itself.
+/// False if the last two gaps are not known, if most cells would join or leave, or if the edge moves so slowly that
+/// single cells join: their gaps fall evenly until they touch, which the extrapolated pressure predicts by itself.
 pub(super) fn predict_contact(state: &State, window: &Window, trial: &mut Trial, step: &Step<'_>, c: f64) -> bool {
     let (now, before) = (&state.held.current, &state.previous);
     let elastic = state.history.exponential_rule().is_some_and(|rule| !rule.has_memory());
@@ -66,9 +68,9 @@ pub(super) fn predict_contact(state: &State, window: &Window, trial: &mut Trial,
     staying >= MIN_SHARE_STAYING * touching.max(likely)
 }
 
-/// Mean distance in cells by which the edge of the contact moved in the last step: cells that joined or left, over the length of
-/// the edge, the number of its sides along one axis or the other. Sides between bands of rows, of which a rank may have one alone,
-/// do not count.
+/// Mean distance in cells by which the edge of the contact moved in the last step: cells that joined or left, over
+/// the length of the edge, the number of its sides along one axis or the other. Sides between bands of rows, of which
+/// a rank may have one alone, do not count.
 fn edge_speed(rows: &Rows, now: &Equilibrium, before: &Equilibrium) -> f64 {
     let columns = rows.cells()[1];
     let [now, before] = [now, before].map(|equilibrium| &equilibrium.solution.pressure);

@@ -7,9 +7,9 @@ use crate::hereditary::History;
 impl RigidBodies<'_> {
     /// Writes the gap of a step before any pressure and free motion, after [`History::predict`].
     ///
-    /// In contact under bodies of prescribed motion, hi + u is their motion at the start of the step. The gap there is their
-    /// retraction minus the recovery u − u_old of the surface. The difference hi + u_old − ω would lose the recovery in
-    /// rounding once the pressure has relaxed by many decades.
+    /// In contact under bodies of prescribed motion, hi + u is their motion at the start of the step. The gap there
+    /// is their retraction minus the recovery u − u_old of the surface. The difference hi + u_old − ω would lose the
+    /// recovery in rounding once the pressure has relaxed by many decades.
     pub(super) fn fill_gap_of_step(&self, initial: &Gap, history: &History, pressure: &[f64], gap: &mut [f64]) {
         self.fill_gap(initial, Some(history.trial()), gap);
         for (body, retraction) in self.retractions() {

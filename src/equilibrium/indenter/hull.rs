@@ -4,8 +4,8 @@ use crate::Grid;
 
 /// Corners nearer to a line than this fraction of the grid's length are on it.
 const COLLINEAR: f64 = 1e-12;
-/// A load nearer to the boundary than this fraction of the grid's length is on it: the shares of the force that inner cells
-/// would carry are rounding.
+/// A load nearer to the boundary than this fraction of the grid's length is on it: the shares of the force that inner
+/// cells would carry are rounding.
 const ON_BOUNDARY: f64 = 1e-11;
 
 /// The convex hull of some cell centres.
@@ -60,9 +60,9 @@ impl Hull {
         Hull { corners, tolerance }
     }
 
-    /// The point at which pressures balance a force at `point`: `point` itself, or the nearest point of the boundary if their
-    /// distance is rounding; the body then rests on an edge or a corner. `None` for a force outside the hull. An axis along
-    /// which the body cannot tilt does not count.
+    /// The point at which pressures balance a force at `point`: `point` itself, or the nearest point of the boundary
+    /// if their distance is rounding; the body then rests on an edge or a corner. `None` for a force outside the
+    /// hull. An axis along which the body cannot tilt does not count.
     pub(crate) fn balanced_at(&self, point: [f64; 2], tilts: [bool; 2]) -> Option<[f64; 2]> {
         match tilts {
             [false, false] => Some(point),

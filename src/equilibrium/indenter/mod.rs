@@ -41,8 +41,8 @@ impl Indenter {
         }
     }
 
-    /// The indenter of a rank: the gap of a single body on the computed cells of the local rows, which are `region`; symmetry and
-    /// hull of all rows. A call of all ranks.
+    /// The indenter of a rank: the gap of a single body on the computed cells of the local rows, which are `region`;
+    /// symmetry and hull of all rows. A call of all ranks.
     pub(crate) fn shared(gap: Gap, even: [bool; 2], hull: Hull, region: &Region) -> Indenter {
         let hulls = vec![OnceLock::from(hull)];
         Indenter { even: OnceLock::from(even), hulls, is_local: true, ..Indenter::new(gap, 0) }.with_rows_beyond(region)
@@ -78,8 +78,8 @@ impl Indenter {
         self.hulls[body].get_or_init(|| Hull::new(grid, touchable))
     }
 
-    /// The indenter of a rank with another rounding of the gap, on the local rows of the region of another state. A call of all
-    /// ranks.
+    /// The indenter of a rank with another rounding of the gap, on the local rows of the region of another state. A
+    /// call of all ranks.
     #[cfg(feature = "checkpoint")]
     pub(crate) fn with_gap_on(&self, region: &Region, gap: Gap) -> Indenter {
         let built = self.even.get().copied().unwrap_or_default();

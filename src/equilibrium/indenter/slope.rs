@@ -8,7 +8,8 @@ use crate::solver::{HaloExchange, HaloRows};
 pub(crate) const STEEP: f64 = 0.5;
 /// Bodies without a slope beyond this are no real ones: a nanometre over a millimetre.
 const FLAT: f64 = 1e-6;
-/// Nor do surfaces of so great a length rise by less than this part of it \[m, 1\]: lengths in mm or µm that are read as metres.
+/// Nor do surfaces of so great a length rise by less than this part of it \[m, 1\]: lengths in mm or µm that are read
+/// as metres.
 const LONG: f64 = 0.1;
 const LEAST_RISE: f64 = 1e-4;
 /// A relief of a smaller part of the height of the lowest point is rounding.
@@ -74,7 +75,8 @@ impl Indenter {
         [squared, above.iter().copied().filter(|h| h.is_finite()).fold(0.0, f64::max)]
     }
 
-    /// Fetches the rows of the gap beyond the local rows of a rank, and finds its slopes on all ranks. A call of all ranks.
+    /// Fetches the rows of the gap beyond the local rows of a rank, and finds its slopes on all ranks. A call of all
+    /// ranks.
     pub(super) fn with_rows_beyond(mut self, region: &Region) -> Indenter {
         let (rows, [_, n2]) = (region.rows(), region.cells());
         let above = &self.gap.above;
@@ -89,7 +91,8 @@ impl Indenter {
         self
     }
 
-    /// Square of the slope of the gap in a cell: along each axis the lesser of the slopes to both neighbours on the same body.
+    /// Square of the slope of the gap in a cell: along each axis the lesser of the slopes to both neighbours on the
+    /// same body.
     fn squared_slope(&self, Cells { spacing, n2, folded }: Cells, k: usize) -> f64 {
         let (gap, j) = (&self.gap, k % n2);
         let above = &gap.above;

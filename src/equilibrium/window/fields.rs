@@ -48,8 +48,8 @@ impl Region {
         }
     }
 
-    /// A field of the region on another one of the same grid; `elsewhere` gives its values on cells that are neither in this
-    /// region nor mirror images of it.
+    /// A field of the region on another one of the same grid; `elsewhere` gives its values on cells that are neither
+    /// in this region nor mirror images of it.
     pub(crate) fn transfer(&self, own: &[f64], other: &Region, elsewhere: impl Fn(usize) -> f64) -> Vec<f64> {
         (0..other.len()).map(|k| self.find(other.cell(k)).map_or_else(|| elsewhere(k), |own_k| own[own_k])).collect()
     }
@@ -59,8 +59,8 @@ impl Region {
         self.rows().any(own.iter().any(|&value| value > 0.0))
     }
 
-    /// The smallest rectangle of the whole grid that holds all cells, mirror images included, with a positive value in `own`;
-    /// `None` if there is none.
+    /// The smallest rectangle of the whole grid that holds all cells, mirror images included, with a positive value
+    /// in `own`; `None` if there is none.
     pub(crate) fn reach(&self, own: &[f64]) -> Option<Extent> {
         let rows = own.chunks_exact(self.cells()[1]).enumerate().filter_map(|(i, row)| {
             let first = row.iter().position(|&value| value > 0.0)?;
@@ -70,7 +70,8 @@ impl Region {
         self.reach_of(Extent::hull(rows))
     }
 
-    /// The smallest rectangle of the whole grid that holds a rectangle of its cells on each rank, mirror images included.
+    /// The smallest rectangle of the whole grid that holds a rectangle of its cells on each rank, mirror images
+    /// included.
     pub(crate) fn reach_of(&self, own: Option<Extent>) -> Option<Extent> {
         self.hull_of_all_ranks(own.map(|own| self.on_whole(own))).map(|found| self.with_images(found))
     }
@@ -89,7 +90,8 @@ impl Region {
         Extent { low, high }
     }
 
-    /// The smallest rectangle of the whole grid that holds a rectangle of its cells and their mirror images, in one process.
+    /// The smallest rectangle of the whole grid that holds a rectangle of its cells and their mirror images, in one
+    /// process.
     pub(crate) fn shown_extent(&self, own: Extent) -> Extent {
         self.with_images(self.on_whole(own))
     }
@@ -127,8 +129,8 @@ impl Region {
     }
 }
 
-/// Fields of the region `from` on the region of a `window`, by their roles. With u = K U, a displacement outside the old region is the
-/// convolution of its source; nothing is unknown where the images of the region cover the grid.
+/// Fields of the region `from` on the region of a `window`, by their roles. With u = K U, a displacement outside the
+/// old region is the convolution of its source; nothing is unknown where the images of the region cover the grid.
 pub(crate) fn transfer_by_role<'a>(
     from: &'a Region,
     to: &'a Region,

@@ -23,8 +23,8 @@ pub(crate) trait OnRegion: Sized {
     fn transferred_to(&mut self, asked: Self::Asked<'_>, region: Region) -> Result<Box<Self>>;
 }
 
-/// Solves in `own`, or in a copy on the first `larger` region that contains the whole contact. The solution begins on the region
-/// `placed`, and whether that was chosen for a contact, if there is one. Returns Σ p.
+/// Solves in `own`, or in a copy on the first `larger` region that contains the whole contact. The solution begins on
+/// the region `placed`, and whether that was chosen for a contact, if there is one. Returns Σ p.
 pub(crate) fn solve_on_growing_region<C: OnRegion>(
     ground: &Ground,
     own: &mut C,

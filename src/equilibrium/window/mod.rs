@@ -12,8 +12,8 @@ use crate::geometry::Gap;
 use crate::kernel::{LocalKernel, PeriodInverse, Workspace};
 use crate::solver::{ActiveSet, Outcome, PolonskyKeer, Problem, Solve, Stop};
 
-/// Kernel, solver and gap on the region of a state: all of it follows from scene, region and indenter. It is rebuilt for
-/// another region and never saved.
+/// Kernel, solver and gap on the region of a state: all of it follows from scene, region and indenter. It is rebuilt
+/// for another region and never saved.
 #[derive(Debug, Clone)]
 pub(crate) struct Window {
     pub(crate) kernel: LocalKernel,

@@ -14,9 +14,9 @@ use crate::solver::RigidMotion;
 /// Bisections for the approach at first contact, an estimate.
 const HALVINGS: usize = 24;
 
-/// The region that a solution has to begin on, unless it is the one held: symmetric where the region is folded and the indenter is
-/// not `moving` along that axis, and with the first contact within it, at the compliance `first` of bodies that are yet to touch.
-/// Told with it is whether it was chosen for a contact.
+/// The region that a solution has to begin on, unless it is the one held: symmetric where the region is folded and
+/// the indenter is not `moving` along that axis, and with the first contact within it, at the compliance `first` of
+/// bodies that are yet to touch. Told with it is whether it was chosen for a contact.
 ///
 /// # Errors
 /// If ranks share out the rows, and the load breaks a symmetry.
@@ -77,13 +77,14 @@ fn first_contact(ground: &Ground, region: &Region, request: Request<'_>, complia
     touched.map(|touched| region_holding(&ground.grid, region.folded(), lowest.with(touched)))
 }
 
-/// The depth below first touch at which a body about comes to rest, under the product of a force and a contact compliance.
+/// The depth below first touch at which a body about comes to rest, under the product of a force and a contact
+/// compliance.
 pub(crate) fn resting_depth(ground: &Ground, held: &Held, body: usize, force_times_compliance: f64) -> f64 {
     level(ground, &held.region.of_gap(), &held.indenter, body, force_times_compliance)[1]
 }
 
-/// The lowest gap of a body, above the datum, and how far above it the level lies at which the gap has risen by a²/2R; `all`
-/// is the region that the gap is on.
+/// The lowest gap of a body, above the datum, and how far above it the level lies at which the gap has risen by
+/// a²/2R; `all` is the region that the gap is on.
 fn level(ground: &Ground, all: &Region, indenter: &Indenter, body: usize, force_times_compliance: f64) -> [f64; 2] {
     let (gap, rows, images) = (indenter.gap(), all.rows(), all.images());
     let heights =
@@ -108,8 +109,9 @@ pub(crate) const MAX_WINDOW_FRACTION: f64 = 0.7;
 /// A larger region, if the bodies of a trial might touch outside this one, whose displacement is K
 /// times a factor and a source.
 ///
-/// No convolution is needed to rule that out: at a distance r, K of a source U ≥ 0 within a distance ρ of a point is at least
-/// ∫U/(π (r + ρ)). Where pressures released within long steps have left some U < 0, that takes away at most ∫|U|/(π (r − ρ)).
+/// No convolution is needed to rule that out: at a distance r, K of a source U ≥ 0 within a distance ρ of a point is
+/// at least ∫U/(π (r + ρ)). Where pressures released within long steps have left some U < 0, that takes away at most
+/// ∫|U|/(π (r − ρ)).
 pub(crate) fn outgrown(
     ground: &Ground,
     held: &Held,

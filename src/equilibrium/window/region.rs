@@ -10,8 +10,8 @@ use crate::observe::resolution::Ends;
 use crate::parallel::Rows;
 use crate::solver::{Freedom, Modes};
 
-/// A rectangle of cells; where the scene is symmetric, half or a quarter of it. Elsewhere fields are mirror images, or there
-/// is no contact.
+/// A rectangle of cells; where the scene is symmetric, half or a quarter of it. Elsewhere fields are mirror images,
+/// or there is no contact.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Region {
@@ -69,7 +69,8 @@ impl Region {
         if self.is_shared() { self.clone() } else { Region::whole(&self.whole, [false; 2]) }
     }
 
-    /// A region of suitable size that holds these cells of the whole grid, and a fraction `margin` more along each axis.
+    /// A region of suitable size that holds these cells of the whole grid, and a fraction `margin` more along each
+    /// axis.
     pub(crate) fn around(grid: &Grid, folded: [bool; 2], held: Extent, margin: f64) -> Region {
         let (mut first, mut cells) = ([0; 2], [0; 2]);
         for axis in 0..2 {
@@ -257,8 +258,8 @@ impl Region {
     }
 }
 
-/// The next of the sizes 4, 5, 6, 7, 8, 10, 12, 14, 16, 20 …: transforms of them are fast, and a contact that grows need not
-/// change them often.
+/// The next of the sizes 4, 5, 6, 7, 8, 10, 12, 14, 16, 20 …: transforms of them are fast, and a contact that grows
+/// need not change them often.
 fn suitable(cells: usize) -> usize {
     let step = 1 << cells.max(4).ilog2().saturating_sub(2);
     cells.max(4).next_multiple_of(step)

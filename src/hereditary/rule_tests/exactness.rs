@@ -74,8 +74,8 @@ fn the_recursion_is_the_integral() {
     println!("recursion and quadrature differ by {worst:?}");
 }
 
-/// After enough steps, all that v lacks is what the polynomial of the last step lacks: what lies before it is remembered exactly,
-/// a quadratic by the corrected linear rule, a cubic by the corrected quadratic one.
+/// After enough steps, all that v lacks is what the polynomial of the last step lacks: what lies before it is
+/// remembered exactly, a quadratic by the corrected linear rule, a cubic by the corrected quadratic one.
 #[test]
 fn polynomials_are_remembered_exactly() {
     let mut random = Random(11);
@@ -128,7 +128,8 @@ fn polynomials_are_remembered_exactly() {
     }
 }
 
-/// After a step of very many relaxation times nothing is left of what was before, however long the steps before it were.
+/// After a step of very many relaxation times nothing is left of what was before, however long the steps before it
+/// were.
 #[test]
 fn a_long_step_forgets() {
     for (name, body) in bodies() {

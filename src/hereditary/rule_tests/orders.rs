@@ -81,8 +81,8 @@ fn bodies_without_elastic_response_are_met_with_second_order() {
     }
 }
 
-/// E ~ t^(−α), α = ½: what a step lacks of a degree k of u makes an error of the order k − α. Its series has a small elastic
-/// response, and so steps of given length take u to be linear.
+/// E ~ t^(−α), α = ½: what a step lacks of a degree k of u makes an error of the order k − α. Its series has a small
+/// elastic response, and so steps of given length take u to be linear.
 #[test]
 fn a_springpot_takes_half_an_order() {
     let law = PowerLaw::new(1.0, 1.0, 0.5).unwrap().series(1e-4..=1e2, 1e-5).unwrap();

@@ -40,7 +40,8 @@ fn predictions_that_rise_above_the_surface_are_rare_and_made_again() {
         }
         let share = repeated as f64 / f64::from(steps);
         println!(
-            "{interpolant:?}: {repeated} of {steps} predictions made again, {falls_below_zero} falls_below_zero, least u {lowest:.1e}"
+            "{interpolant:?}: {repeated} of {steps} predictions made again, {falls_below_zero} falls_below_zero, \
+            least u {lowest:.1e}"
         );
         assert!(share <= most && lowest > -1e-8, "{share} {lowest:e}");
     }

@@ -74,11 +74,12 @@ fn square(matrix: &[Vec<f64>]) -> Vec<Vec<f64>> {
     square
 }
 
-/// How often the matrix of a period is squared: with a norm of 1e4 in the end, the spectral radius is at most 1 + 5e-13.
+/// How often the matrix of a period is squared: with a norm of 1e4 in the end, the spectral radius is at most
+/// 1 + 5e-13.
 const SQUARES: u32 = 44;
 
-/// An upper bound of the spectral radius of a period of steps that begins with a step `first`: the norm of a very high power of
-/// its matrix, to the inverse of that power.
+/// An upper bound of the spectral radius of a period of steps that begins with a step `first`: the norm of a very
+/// high power of its matrix, to the inverse of that power.
 fn radius(body: &CreepSpectrum, interpolant: Interpolant, first: f64, ratios: &[f64]) -> f64 {
     let mut free = Free::new(body, interpolant);
     let period = |free: &mut Free| {

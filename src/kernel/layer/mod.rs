@@ -48,9 +48,11 @@ const SAME_POISSON: f64 = 1e-9;
 /// in line contact too. The mean belongs to a layer compressed everywhere, with no free side: its oedometric
 /// compliance, zero for an incompressible one.
 ///
-/// Layer and base creep by one function C(t): the base is rigid, or creeps as the layer does. A base that creeps otherwise, or not, is
-/// modelled in steady motions ([`Builder::build_sliding_on`](crate::contact::Builder::build_sliding_on)), not in time. The layer's ν must equal the material's, and constant: the
-/// contact is refused ([`KernelError::LayerMaterial`](crate::KernelError::LayerMaterial)) with another one, with
+/// Layer and base creep by one function C(t): the base is rigid, or creeps as the layer does. A base that creeps
+/// otherwise, or not, is modelled in steady motions
+/// ([`Builder::build_sliding_on`](crate::contact::Builder::build_sliding_on)), not in time. The layer's ν must equal
+/// the material's, and constant: the contact is refused
+/// ([`KernelError::LayerMaterial`](crate::KernelError::LayerMaterial)) with another one, with
 /// [`Material::elastic_bulk`](crate::rheology::Material::elastic_bulk), and with a counter body that deforms.
 ///
 /// A layer must be modelled where the contact radius is more than a tenth of its thickness: at a/h = 0.1 a bonded
@@ -106,7 +108,8 @@ impl Layer {
     }
 
     /// A layer bonded to a half-space of another stiffness: `thickness` \[m\], Poisson's ratio `nu`, the shear
-    /// modulus of the layer over the modulus of the base, G₁/G₂ at all times, and Poisson's ratio of the base `base_nu`.
+    /// modulus of the layer over the modulus of the base, G₁/G₂ at all times, and Poisson's ratio of the base
+    /// `base_nu`.
     ///
     /// # Errors
     /// As [`Layer::bonded_to_rigid`]; if `shear_ratio` is not in \[1e-6, 1e6\], or `base_nu` is outside (−1, ½].
@@ -127,8 +130,8 @@ impl Layer {
         if let Base::HalfSpace { poisson, .. } = self.base { Some(poisson) } else { None }
     }
 
-    /// What the layer adds to the displacement of the half-space at the datum of a line load, beyond the load at a depth of 2h that the half-space lacks: under
-    /// a unit pressure on a strip, over its width.
+    /// What the layer adds to the displacement of the half-space at the datum of a line load, beyond the load at a
+    /// depth of 2h that the half-space lacks: under a unit pressure on a strip, over its width.
     pub(crate) fn at_datum(&self, datum: f64) -> f64 {
         let deep = FRAC_2_PI * (1.0 - self.longest_over_half_space()) * (2.0 * self.thickness / datum).ln();
         Remainder::of_lines(self, self.thickness, Some(datum)).at_datum() + deep
@@ -192,8 +195,8 @@ impl Layer {
         self.response().at(0.0)
     }
 
-    /// The part of the displacement under a contact of this `area` \[m²\] that the layer takes, and not its base. A square of side L yields
-    /// like the wave 2.1/L.
+    /// The part of the displacement under a contact of this `area` \[m²\] that the layer takes, and not its base. A
+    /// square of side L yields like the wave 2.1/L.
     pub(crate) fn share(&self, area: f64) -> f64 {
         let yields = self.response().at(2.1 / area.sqrt() * self.thickness);
         if self.is_on_rigid() { 1.0 } else { (1.0 - self.longest_over_half_space() / yields).max(0.0) }
@@ -212,8 +215,8 @@ impl Layer {
         }
     }
 
-    /// Rejects a material whose Poisson's ratio differs from the ratio `layer` of the layer. `bodies` are the ratios of the bodies of a
-    /// contact, `None` where the ratio is not constant.
+    /// Rejects a material whose Poisson's ratio differs from the ratio `layer` of the layer. `bodies` are the ratios
+    /// of the bodies of a contact, `None` where the ratio is not constant.
     pub(crate) fn check_material(layer: f64, bodies: &[Option<f64>]) -> Result<()> {
         let refused = |what| Err(Error::from(KernelError::LayerMaterial { layer, what }));
         match bodies {

@@ -56,7 +56,8 @@ impl Remainder {
         Remainder::new(layer, last, |x| hankel.integral(x))
     }
 
-    /// The remainder of a load on a line; `datum` \[m\] is where the displacement on a base that is a half-space is zero.
+    /// The remainder of a load on a line; `datum` \[m\] is where the displacement on a base that is a half-space is
+    /// zero.
     pub(in crate::kernel) fn of_lines(layer: &Layer, last: f64, datum: Option<f64>) -> Remainder {
         let (response, longest) = (layer.response(), layer.longest_over_half_space());
         let fourier = Oscillation::new(Weight::Cosine, response.least_scale(), |t: f64| {
@@ -70,8 +71,8 @@ impl Remainder {
         Remainder { log, datum: at_datum, ..Remainder::new(layer, last, |x| fourier.integral(x)) }
     }
 
-    /// The remainder of a load on a line that varies as a wave of wave number `kappa` \[1/m\] > 0 along it; `None` where the wave
-    /// does not reach the base.
+    /// The remainder of a load on a line that varies as a wave of wave number `kappa` \[1/m\] > 0 along it; `None`
+    /// where the wave does not reach the base.
     pub(in crate::kernel) fn of_wave(layer: &Layer, last: f64, kappa: f64) -> Option<Remainder> {
         let (response, k) = (layer.response(), kappa * layer.thickness);
         if k > DEEPEST_WAVE {
@@ -104,7 +105,8 @@ impl Remainder {
         self.over(at, sides) * self.thickness / PI
     }
 
-    /// The displacement \[m\] under a unit pressure on a strip of this width \[m\] at a distance \[m\], in plane strain.
+    /// The displacement \[m\] under a unit pressure on a strip of this width \[m\] at a distance \[m\], in plane
+    /// strain.
     pub(in crate::kernel) fn on_line(&self, at: f64, side: f64) -> f64 {
         let [at, side] = [at, side].map(|length| length / self.thickness);
         FRAC_2_PI * self.along(at, side) * self.thickness - self.datum * side * self.thickness

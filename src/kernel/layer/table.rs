@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 /// Nodes of an interval.
 const NODES: usize = 24;
 
-/// Chebyshev series of a function on \[0, 1\], \[1, 2\], \[2, 4\], \[4, 8\], …: for one that is analytic up to a distance of
-/// 2 from the real axis their error is below rounding.
+/// Chebyshev series of a function on \[0, 1\], \[1, 2\], \[2, 4\], \[4, 8\], …: for one that is analytic up to a
+/// distance of 2 from the real axis their error is below rounding.
 #[derive(Debug, Clone)]
 pub(super) struct Table {
     /// Coefficients of each interval, the first of them halved.

@@ -17,7 +17,8 @@ enum Below {
 }
 
 /// L(t) by the problem itself: Airy's function f(z) cos z of wave number 1 on a layer of thickness t, f and its
-/// derivatives of four (and two in the base) exponentials, the conditions of surface and base solved as a linear system.
+/// derivatives of four (and two in the base) exponentials, the conditions of surface and base solved as a linear
+/// system.
 fn by_equations(t: f64, nu: f64, below: Below) -> f64 {
     // derivatives 0 to 3 of e^(s(z − z0)), z e^(s (z − z0)) at z
     let rows = |s: f64, z0: f64, z: f64| {

@@ -38,7 +38,8 @@ pub(super) enum Response {
     Frictionless,
 }
 
-/// The coefficients of N and D of a layer bonded to its base, over (1 + μ)²: complex in a steady motion over a base that creeps otherwise.
+/// The coefficients of N and D of a layer bonded to its base, over (1 + μ)²: complex in a steady motion over a base
+/// that creeps otherwise.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Bonded<T> {
     /// α, β, γ of N and D.

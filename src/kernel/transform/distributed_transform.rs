@@ -1,8 +1,8 @@
 //! The transforms where ranks share out the rows.
 //!
-//! Each rank transforms its rows, exchanges panels of columns all-to-all, convolves its columns, and exchanges back. So two
-//! exchanges are a convolution, each of 16 bytes for each coefficient of a row that is not zero: rows that only pad the columns
-//! are not sent.
+//! Each rank transforms its rows, exchanges panels of columns all-to-all, convolves its columns, and exchanges back.
+//! So two exchanges are a convolution, each of 16 bytes for each coefficient of a row that is not zero: rows that
+//! only pad the columns are not sent.
 
 use std::ops::Range;
 
@@ -76,7 +76,8 @@ impl Shares {
         self.rows.exchange(written, |rank| rows(rank).len() * own)
     }
 
-    /// The numbers that go to the other ranks: where they lie rank by rank, tile by tile, and where in local rows of tiles.
+    /// The numbers that go to the other ranks: where they lie rank by rank, tile by tile, and where in local rows of
+    /// tiles.
     fn pieces(&self, across: usize) -> impl Iterator<Item = (Range<usize>, Range<usize>)> {
         let (rows, mut packed) = (self.down[self.rows.rank()].len(), 0);
         let all = self.across.iter().flat_map(move |panels| (0..rows).map(move |row| (row, panels)));
@@ -99,8 +100,8 @@ fn tiles(rows: Range<usize>, high: usize) -> Range<usize> {
 }
 
 impl SpectralOperator {
-    /// Convolves local rows: the result remains in the workspace, its rows still transformed. A single column remains in the cell
-    /// values of all ranks.
+    /// Convolves local rows: the result remains in the workspace, its rows still transformed. A single column remains
+    /// in the cell values of all ranks.
     pub(super) fn convolve_shared(&self, shares: &Shares, input: &[f64], work: &mut TransformWorkspace) {
         if let Some(column) = &self.column {
             let mut all = std::mem::take(&mut work.column.all);

@@ -11,7 +11,8 @@ const REAL: u128 = size_of::<f64>() as u128;
 const COMPLEX: u128 = size_of::<Complex64>() as u128;
 
 impl Layout {
-    /// Bytes of an operator: its spectrum, of which ranks that share it out have some columns, and the tables of its transforms.
+    /// Bytes of an operator: its spectrum, of which ranks that share it out have some columns, and the tables of its
+    /// transforms.
     pub(crate) fn operator_bytes(&self, shares: Option<&Shares>) -> u128 {
         let columns = shares.map_or(self.independent(1), |shares| shares.columns(self).len());
         let spectrum = REAL * self.independent(0) as u128 * columns as u128;

@@ -1,4 +1,5 @@
-//! A two-dimensional linear operator with a real even spectrum: transform, multiply, transform back (Eq. 7 of the paper).
+//! A two-dimensional linear operator with a real even spectrum: transform, multiply, transform back (Eq. 7 of the
+//! paper).
 //!
 //! Both the influence kernel (zero-padded, so that the convolution is linear) and the preconditioner
 //! (periodic) are such operators. Nothing is computed that is known to be zero, mirrored or discarded:

@@ -12,11 +12,11 @@ use crate::kernel::Layout;
 pub(crate) struct TransformWorkspace {
     /// The layout that it was made for.
     pub(crate) layout: Layout,
-    /// Coefficients of the rows, in tiles: the coefficients of 8 rows side by side. A folded row holds the (real) coefficients of
-    /// two.
+    /// Coefficients of the rows, in tiles: the coefficients of 8 rows side by side. A folded row holds the (real)
+    /// coefficients of two.
     pub(super) tiles: Vec<Complex64>,
-    /// Coefficients after the columns, 8 columns below each other; empty for a single thread, which works in place. A rank packs
-    /// here the numbers that it exchanges.
+    /// Coefficients after the columns, 8 columns below each other; empty for a single thread, which works in place. A
+    /// rank packs here the numbers that it exchanges.
     pub(super) result: Vec<Complex64>,
     pub(super) lanes: Vec<Lane>,
     /// Replaces all of these where the operator has a single column.
@@ -60,8 +60,8 @@ impl SpectralOperator {
         self.buffers(self.layout.lanes(self.shares.as_ref()), self.tiles())
     }
 
-    /// Buffers for [`SpectralOperator::apply_beside`] an operator of the same cells, which lends its tiles if they suffice. (On a
-    /// rank the smaller operator may have more tiles.)
+    /// Buffers for [`SpectralOperator::apply_beside`] an operator of the same cells, which lends its tiles if they
+    /// suffice. (On a rank the smaller operator may have more tiles.)
     pub(crate) fn workspace_beside(&self, lender: &SpectralOperator) -> TransformWorkspace {
         let lends = self.column.is_none() && lender.column.is_none() && lender.tiles() >= self.tiles();
         self.buffers(self.layout.lanes(self.shares.as_ref()), if lends { 0 } else { self.tiles() })

@@ -11,8 +11,8 @@ use crate::load::{FnHistory, Load, LoadHistory, Periodic, PiecewiseLinear, Ramp,
 /// A load history of any type.
 pub type AnyHistory = Arc<dyn LoadHistory>;
 
-/// Loads of every kind: forces up to `force` \[N\], approaches within `depth` \[m\], springs about as stiff as both suggest, tilts within `tilt` \[rad\], load
-/// points within `reach` of the origin \[m\].
+/// Loads of every kind: forces up to `force` \[N\], approaches within `depth` \[m\], springs about as stiff as both
+/// suggest, tilts within `tilt` \[rad\], load points within `reach` of the origin \[m\].
 pub fn loads(force: f64, depth: f64, tilt: f64, reach: f64) -> impl Strategy<Value = Load> {
     let part = || -1.0..1.0_f64;
     let one = move || {

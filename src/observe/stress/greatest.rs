@@ -25,12 +25,13 @@ pub struct StressPeak {
 }
 
 impl SubsurfaceStress {
-    /// The greatest of a quantity of the stress, such as [`Stress::von_mises`] or [`Stress::tresca`], between the first and the
-    /// last of the `depths` \[m\], and its place.
+    /// The greatest of a quantity of the stress, such as [`Stress::von_mises`] or [`Stress::tresca`], between the
+    /// first and the last of the `depths` \[m\], and its place.
     ///
-    /// Sought below the centres of all cells at each of the depths, then refined by parabolas through its neighbours along
-    /// each axis, which are computed anew at the vertices and narrowed in eight rounds: the place does not depend on the
-    /// depths as long as they find the right peak. Of equal peaks, as in symmetric contacts, one is returned.
+    /// Sought below the centres of all cells at each of the depths, then refined by parabolas through its neighbours
+    /// along each axis, which are computed anew at the vertices and narrowed in eight rounds: the place does not
+    /// depend on the depths as long as they find the right peak. Of equal peaks, as in symmetric contacts, one is
+    /// returned.
     ///
     /// # Errors
     /// As [`SubsurfaceStress::on_section`].

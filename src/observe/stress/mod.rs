@@ -36,31 +36,32 @@ const ENDLESS: f64 = 1e60;
 /// The stress below the surface of a half-space under a pressure: on planes, on sections, at points, and where it is
 /// greatest. See [`Fields::stress`](crate::fields::Fields::stress).
 ///
-/// x3 is the depth below the surface, x1 and x2 are the coordinates of the grid; tension is positive, σ33 at the surface is minus the
-/// pressure.
+/// x3 is the depth below the surface, x1 and x2 are the coordinates of the grid; tension is positive, σ33 at the
+/// surface is minus the pressure.
 ///
-/// **Which pressure.** Equations of equilibrium and compatibility contain no modulus but Poisson's ratio ν. While this is
-/// constant, the stress in a linear viscoelastic half-space equals the stress in an elastic half-space under the present
-/// tractions. These are known on the whole surface: the pressure, and zero outside the contact. Creep and history act only
-/// through the pressure. Where ν changes as the body creeps ([`Material::elastic_bulk`](crate::rheology::Material::elastic_bulk)),
-/// the stress is A p + B r, linear in 1 − 2ν: A p is the stress at ν = ½, and r = ∫ (1 − 2ν)(t − s) dp(s) depends on the
-/// history; see [`StressHistory`](crate::contact::StressHistory).
+/// **Which pressure.** Equations of equilibrium and compatibility contain no modulus but Poisson's ratio ν. While
+/// this is constant, the stress in a linear viscoelastic half-space equals the stress in an elastic half-space under
+/// the present tractions. These are known on the whole surface: the pressure, and zero outside the contact. Creep and
+/// history act only through the pressure. Where ν changes as the body creeps
+/// ([`Material::elastic_bulk`](crate::rheology::Material::elastic_bulk)), the stress is A p + B r, linear in 1 − 2ν:
+/// A p is the stress at ν = ½, and r = ∫ (1 − 2ν)(t − s) dp(s) depends on the history; see
+/// [`StressHistory`](crate::contact::StressHistory).
 ///
-/// **Which bodies.** A half-space loaded on the cells of the grid: closed forms of a rectangle, convolved on a padded grid.
-/// Line contacts: plane strain, σ22 (along the line) = ν (σ11 + σ33). Periodic bodies: closed forms of each wave; below the
-/// mean pressure p̄ σ33 = −p̄, and the lateral stress is −ν/(1 − ν) p̄, since every period keeps its lengths. The stress in the
-/// counter body is the same function of the pressure, with its own ν, and x3 the depth below its surface. The stress is
-/// not known, and refused, in layers, in user-defined bodies, and in bodies periodic along one axis with several cells
-/// along it.
+/// **Which bodies.** A half-space loaded on the cells of the grid: closed forms of a rectangle, convolved on a padded
+/// grid. Line contacts: plane strain, σ22 (along the line) = ν (σ11 + σ33). Periodic bodies: closed forms of each
+/// wave; below the mean pressure p̄ σ33 = −p̄, and the lateral stress is −ν/(1 − ν) p̄, since every period keeps its
+/// lengths. The stress in the counter body is the same function of the pressure, with its own ν, and x3 the depth
+/// below its surface. The stress is not known, and refused, in layers, in user-defined bodies, and in bodies periodic
+/// along one axis with several cells along it.
 ///
 /// **How near the surface.** The pressure is constant over each cell: depths below half the longer side of a cell are
-/// refused, since there the stress varies within a cell. Where the pressure rises evenly from cell to cell, the ripple of
-/// σ33 is 6 % of the difference between neighbours at half a side, 0.4 % at one side, and falls by e^(−2π) with each
-/// further one: (1 + qz) e^(−qz)/π for the wave q = 2π/side.
+/// refused, since there the stress varies within a cell. Where the pressure rises evenly from cell to cell, the
+/// ripple of σ33 is 6 % of the difference between neighbours at half a side, 0.4 % at one side, and falls by e^(−2π)
+/// with each further one: (1 + qz) e^(−qz)/π for the wave q = 2π/side.
 ///
-/// Cost: a plane takes one closed form per cell, three forward and three inverse complex transforms of the padded grid, on as
-/// many threads as the pool has (feature `rayon`, with the same result); a section takes a plane per depth; a point one closed
-/// form per loaded cell.
+/// Cost: a plane takes one closed form per cell, three forward and three inverse complex transforms of the padded
+/// grid, on as many threads as the pool has (feature `rayon`, with the same result); a section takes a plane per
+/// depth; a point one closed form per loaded cell.
 ///
 /// ```
 /// use viscocontact::{observe::Stress, prelude::*};
@@ -100,23 +101,25 @@ struct Source {
 debug_by!(self: Source => field: Counted(&self.field), spectrum: Counted(&self.spectrum), weights: self.weights);
 
 impl SubsurfaceStress {
-    /// The stress in the body of `kernel` with the constant Poisson's ratio `poisson_ratio`, under `pressure` \[Pa\], one value
-    /// per cell of the kernel's grid; negative values pull.
+    /// The stress in the body of `kernel` with the constant Poisson's ratio `poisson_ratio`, under `pressure` \[Pa\],
+    /// one value per cell of the kernel's grid; negative values pull.
     ///
     /// # Errors
-    /// If the stress in the body is not known ([`KernelError::NoStress`]), there is not one pressure per cell, one is not
-    /// finite or beyond ±1e150 Pa, `poisson_ratio` is outside (−1, ½], or there is not enough memory for the transforms.
+    /// If the stress in the body is not known ([`KernelError::NoStress`]), there is not one pressure per cell, one is
+    /// not finite or beyond ±1e150 Pa, `poisson_ratio` is outside (−1, ½], or there is not enough memory for the
+    /// transforms.
     pub fn new(kernel: &InfluenceKernel, pressure: &[f64], poisson_ratio: f64) -> Result<SubsurfaceStress> {
         let nu = error::poisson_ratio("Poisson's ratio", poisson_ratio)?;
         SubsurfaceStress::of(kernel, &[("pressure", pressure, [1.0, 1.0 - 2.0 * nu])])
     }
 
-    /// The stress in a body whose Poisson's ratio changes as it creeps: `reduced` is r = ∫ (1 − 2ν)(t − s) dp(s) \[Pa\], as
+    /// The stress in a body whose Poisson's ratio changes as it creeps: `reduced` is r = ∫ (1 − 2ν)(t − s) dp(s)
+    /// \[Pa\], as
     /// [`StressHistory`](crate::contact::StressHistory) computes it for an elastic bulk.
     ///
     /// # Errors
-    /// As [`SubsurfaceStress::new`], and of periodic bodies, whose lateral stress below the mean pressure is not linear in
-    /// 1 − 2ν.
+    /// As [`SubsurfaceStress::new`], and of periodic bodies, whose lateral stress below the mean pressure is not
+    /// linear in 1 − 2ν.
     pub fn with_changing_poisson(
         kernel: &InfluenceKernel,
         pressure: &[f64],
@@ -178,8 +181,8 @@ impl SubsurfaceStress {
         &self.grid
     }
 
-    /// The least depth \[m\] at which the stress is given: half of the longer side of a cell. Along an axis with a single
-    /// cell, as in line contacts, its side does not count.
+    /// The least depth \[m\] at which the stress is given: half of the longer side of a cell. Along an axis with a
+    /// single cell, as in line contacts, its side does not count.
     pub fn least_depth(&self) -> f64 {
         self.least_depth
     }
@@ -238,12 +241,12 @@ impl SubsurfaceStress {
         Ok(StressVolume { grid: self.grid.clone(), depths: depths.to_vec(), values })
     }
 
-    /// The stress at points (x1, x2, x3) \[m\], anywhere below the surface and not only below the grid: by the sum over all
-    /// cells, without transforms. Along the axis of a line contact the coordinate does not matter.
+    /// The stress at points (x1, x2, x3) \[m\], anywhere below the surface and not only below the grid: by the sum
+    /// over all cells, without transforms. Along the axis of a line contact the coordinate does not matter.
     ///
     /// # Errors
-    /// If the depth x3 of a point is out of the range of [`SubsurfaceStress::on_plane`], or x1 or x2 is not finite, or beyond
-    /// ±1e40 depths.
+    /// If the depth x3 of a point is out of the range of [`SubsurfaceStress::on_plane`], or x1 or x2 is not finite,
+    /// or beyond ±1e40 depths.
     pub fn at(&self, points: &[[f64; 3]]) -> Result<Vec<Stress>> {
         for &[x1, x2, x3] in points {
             self.check_depth(x3)?;
@@ -273,7 +276,8 @@ impl SubsurfaceStress {
     }
 
     fn check_depth(&self, depth: f64) -> Result<()> {
-        let near = "at least half the longest side of a cell across which the grid resolves anything (`least_depth`): nearer the stress varies within a cell";
+        let near = "at least half the longest side of a cell across which the grid resolves anything \
+            (`least_depth`): nearer the stress varies within a cell";
         within("depth", depth, depth >= self.least_depth, near)?;
         within("depth", depth, depth <= GREATEST_DEPTH, "at most 1e100 m").map(drop)
     }

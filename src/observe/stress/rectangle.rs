@@ -1,7 +1,7 @@
 //! Stress below a uniformly loaded rectangle on a half-space, and below a loaded strip.
 //!
-//! A normal pressure p on the surface of a half-space gives, with the potentials V = ∬ p/ρ and χ = ∬ p ln(ρ + z), V = ∂χ/∂z,
-//! both harmonic (A. E. H. Love, Phil. Trans. R. Soc. A 228, 1929),
+//! A normal pressure p on the surface of a half-space gives, with the potentials V = ∬ p/ρ and χ = ∬ p ln(ρ + z),
+//! V = ∂χ/∂z, both harmonic (A. E. H. Love, Phil. Trans. R. Soc. A 228, 1929),
 //!
 //! ```text
 //! 2π σ_zz = V_z − z V_zz          2π σ_xz = −z V_xz          2π σ_yz = −z V_yz
@@ -10,20 +10,22 @@
 //! 2π σ_xy = −z V_xy − (1 − 2ν) χ_xy
 //! ```
 //!
-//! Love writes 2ν V_z − (1 − 2ν) χ_xx in σ_xx, which is equal since χ_xx + χ_yy + V_z = 0. The form above separates the part
-//! that depends on Poisson's ratio: a plane stress with Airy's function χ, in equilibrium without other components.
+//! Love writes 2ν V_z − (1 − 2ν) χ_xx in σ_xx, which is equal since χ_xx + χ_yy + V_z = 0. The form above separates
+//! the part that depends on Poisson's ratio: a plane stress with Airy's function χ, in equilibrium without other
+//! components.
 //!
-//! Over a rectangle of uniform pressure each derivative is the double difference of a function of the corner, of which
-//! ∂²/∂x∂y is that derivative of 1/ρ or ln(ρ + z). With ξ = x/z, η = y/z from the corner and ρ = √(1 + ξ² + η²), all over z:
+//! Over a rectangle of uniform pressure each derivative is the double difference of a function of the corner, of
+//! which ∂²/∂x∂y is that derivative of 1/ρ or ln(ρ + z). With ξ = x/z, η = y/z from the corner and
+//! ρ = √(1 + ξ² + η²), all over z:
 //!
 //! ```text
 //! V_z   −atan(ξη/ρ)                 z V_xx  −ξη/((1 + ξ²) ρ)       z V_xy  1/ρ
 //! χ_xx  atan(ξη(ρ − 1)/(ξ²ρ + η²))  z V_xz  −η/((1 + ξ²) ρ)        χ_xy    ln(ρ + 1)
 //! ```
 //!
-//! and the same with ξ and η exchanged. ρ − 1 = (ξ² + η²)/(ρ + 1); no other term cancels, whatever the signs of ξ and η: the
-//! forms with ln(ρ + x) that do belong to the displacement and to shear loads. χ_xx is the difference of two arc tangents,
-//! joined so that no branch is left.
+//! and the same with ξ and η exchanged. ρ − 1 = (ξ² + η²)/(ρ + 1); no other term cancels, whatever the signs of ξ and
+//! η: the forms with ln(ρ + x) that do belong to the displacement and to shear loads. χ_xx is the difference of two
+//! arc tangents, joined so that no branch is left.
 //!
 //! For a strip, |η| → ∞ on both sides: plane strain (K. L. Johnson, Contact Mechanics, 1985, section 2.5). Where
 //! |η| is so great that ξ² is below the rounding of η², the terms round to this limit: ξη/ρ to ±ξ, and η/ρ to ±1.
@@ -36,8 +38,8 @@ use crate::Grid;
 /// Weights of the part of the stress that does not depend on ν, and of the part with the factor 1 − 2ν.
 pub(super) type Weights = [f64; 2];
 
-/// The function of the corner whose double difference over the corners of a rectangle is the stress below the rectangle, for
-/// a unit pressure. `xi` and `eta` are the distances from the corner over the depth.
+/// The function of the corner whose double difference over the corners of a rectangle is the stress below the
+/// rectangle, for a unit pressure. `xi` and `eta` are the distances from the corner over the depth.
 pub(super) fn corner(xi: f64, eta: f64, [all, by_ratio]: Weights) -> Stress {
     let (x2, y2) = (xi * xi, eta * eta);
     let rho = (1.0 + x2 + y2).sqrt();
@@ -63,9 +65,9 @@ pub(super) fn corner(xi: f64, eta: f64, [all, by_ratio]: Weights) -> Stress {
     (1.0 / TAU) * stress
 }
 
-/// The stress at a point below a field on rectangles: the sum over all corners, weighted by the double difference of the field
-/// at the corner. Each corner is computed once; corners between equal values are skipped. The rectangles have the sides of
-/// the cells, or are endless along an axis with one cell.
+/// The stress at a point below a field on rectangles: the sum over all corners, weighted by the double difference of
+/// the field at the corner. Each corner is computed once; corners between equal values are skipped. The rectangles
+/// have the sides of the cells, or are endless along an axis with one cell.
 pub(super) fn below_cells(grid: &Grid, sides: [f64; 2], field: &[f64], point: [f64; 3], weights: Weights) -> Stress {
     let ([x, y, z], [n1, n2], [d1, d2]) = (point, grid.cells(), sides);
     let mut sum = Stress::default();

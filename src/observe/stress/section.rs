@@ -16,8 +16,8 @@ pub struct StressSection {
     pub positions: Vec<f64>,
     /// Depths \[m\].
     pub depths: Vec<f64>,
-    /// The stress, one for each position and depth, depths fastest: the stress below `positions[i]` at `depths[k]` is entry
-    /// `i * depths.len() + k`.
+    /// The stress, one for each position and depth, depths fastest: the stress below `positions[i]` at `depths[k]` is
+    /// entry `i * depths.len() + k`.
     pub values: Vec<Stress>,
 }
 

@@ -5,8 +5,8 @@ use std::ops::{Add, AddAssign, Mul};
 /// Sweeps of the Jacobi iteration: it converges quadratically, a matrix of order 3 in four or five.
 const MOST_SWEEPS: usize = 12;
 
-/// The stress at a point below the surface \[Pa\]: x1 and x2 as on the grid, x3 the depth. Tension is positive, so that s33
-/// at the surface is minus the contact pressure.
+/// The stress at a point below the surface \[Pa\]: x1 and x2 as on the grid, x3 the depth. Tension is positive, so
+/// that s33 at the surface is minus the contact pressure.
 ///
 /// ```
 /// use viscocontact::observe::Stress;
@@ -63,8 +63,8 @@ impl Stress {
         (0.5 * (a * a + b * b + c * c) + 3.0 * shear).sqrt()
     }
 
-    /// The Tresca stress \[Pa\]: the difference of the greatest and the least principal stress, twice the greatest shear
-    /// stress on any plane.
+    /// The Tresca stress \[Pa\]: the difference of the greatest and the least principal stress, twice the greatest
+    /// shear stress on any plane.
     pub fn tresca(&self) -> f64 {
         let [greatest, _, least] = self.principal();
         greatest - least
@@ -72,9 +72,9 @@ impl Stress {
 
     /// The principal stresses \[Pa\], the greatest (most tensile) first.
     ///
-    /// By Jacobi's rotations, which are right to rounding of the greatest component however close the principal stresses
-    /// are. The formula by an arc cosine loses half of the digits where two of them coincide, as they do on the axis below
-    /// every round contact.
+    /// By Jacobi's rotations, which are right to rounding of the greatest component however close the principal
+    /// stresses are. The formula by an arc cosine loses half of the digits where two of them coincide, as they do on
+    /// the axis below every round contact.
     pub fn principal(&self) -> [f64; 3] {
         let mut diagonal = [self.s11, self.s22, self.s33];
         // the components 23, 13, 12: each opposite to the axis of its index

@@ -1,15 +1,16 @@
 //! Stress below waves of pressure on a periodic half-space.
 //!
-//! A wave p e^(i(q1 x1 + q2 x2)), q = |(q1, q2)|, has the potentials of [`rectangle`](super::rectangle) χ = −2π p e^(−qz)/q² and
-//! V = 2π p e^(−qz)/q, and the stress, times p e^(−qz) and the wave,
+//! A wave p e^(i(q1 x1 + q2 x2)), q = |(q1, q2)|, has the potentials of [`rectangle`](super::rectangle) χ = −2π p
+//! e^(−qz)/q² and V = 2π p e^(−qz)/q, and the stress, times p e^(−qz) and the wave,
 //!
 //! ```text
 //! σ11 = −1 + z q1²/q + (1 − 2ν) q2²/q²      σ33 = −(1 + qz)                      σ13 = i q1 z
 //! σ22 = −1 + z q2²/q + (1 − 2ν) q1²/q²      σ12 = q1 q2 (z/q − (1 − 2ν)/q²)      σ23 = i q2 z
 //! ```
 //!
-//! The mean pressure p̄ has no wavelength. Below it σ33 = −p̄; the lateral stress depends on the constraint at the sides of
-//! the body. Here every period keeps its lengths: the mean lateral strain is zero, and the mean lateral stress −ν/(1 − ν) p̄.
+//! The mean pressure p̄ has no wavelength. Below it σ33 = −p̄; the lateral stress depends on the constraint at the
+//! sides of the body. Here every period keeps its lengths: the mean lateral strain is zero, and the mean lateral
+//! stress −ν/(1 − ν) p̄.
 
 use std::f64::consts::TAU;
 
@@ -45,8 +46,8 @@ impl Wave {
     }
 }
 
-/// The factors of the stress below a wave at a depth, for a unit pressure. The factors of σ13 and σ23 multiply its slopes
-/// over q1 and q2, the factor of σ12 both slopes.
+/// The factors of the stress below a wave at a depth, for a unit pressure. The factors of σ13 and σ23 multiply its
+/// slopes over q1 and q2, the factor of σ12 both slopes.
 pub(super) fn below_wave(wave: [f64; 2], z: f64, [all, by_ratio]: Weights) -> Stress {
     let [q1, q2] = wave;
     let q = q1.hypot(q2);

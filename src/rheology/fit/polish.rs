@@ -10,8 +10,8 @@ const MAX_CHANGE: f64 = 1.5;
 const DECAYED: f64 = 30.0;
 
 /// Levenberg–Marquardt in the logarithms of strengths and times, which keeps both positive. The strength of a term of
-/// relaxation is its modulus at the first sample: the modulus at t = 0 changes by orders of magnitude with the time. Ends after
-/// `iterations`, when `done`, or when the squares no longer decrease.
+/// relaxation is its modulus at the first sample: the modulus at t = 0 changes by orders of magnitude with the time.
+/// Ends after `iterations`, when `done`, or when the squares no longer decrease.
 pub(in crate::rheology) fn polish(
     start: &FittedSeries,
     samples: &[Sample],

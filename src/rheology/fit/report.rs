@@ -40,9 +40,9 @@ pub enum FitWarning {
         /// Relative deviation, between the samples, of another series that fits them equally well.
         uncertainty: f64,
     },
-    /// Relaxation moduli have no value at t = 0, and do not show what relaxed before the first of them, which slows the creep
-    /// for many times as long: give the modulus at t = 0, or measure earlier. A contact warns of steps that are this short
-    /// ([`Warnings::FASTER_THAN_MATERIAL`](crate::contact::Warnings::FASTER_THAN_MATERIAL)).
+    /// Relaxation moduli have no value at t = 0, and do not show what relaxed before the first of them, which slows
+    /// the creep for many times as long: give the modulus at t = 0, or measure earlier. A contact warns of steps that
+    /// are this short ([`Warnings::FASTER_THAN_MATERIAL`](crate::contact::Warnings::FASTER_THAN_MATERIAL)).
     BeginsLate {
         /// The first time measured \[s\].
         first: f64,
@@ -161,25 +161,26 @@ impl FitReport {
         self.wrong_way
     }
 
-    /// The relative error ε of the creep compliance J that is not exceeded at any measured time, for 95 % of tables with noise:
-    /// the compliance of the body is between J/(1 + ε) and J (1 + ε). The greatest of [`FitReport::uncertainties`]. 0 for a
-    /// function, which is sampled as finely as needed.
+    /// The relative error ε of the creep compliance J that is not exceeded at any measured time, for 95 % of tables
+    /// with noise: the compliance of the body is between J/(1 + ε) and J (1 + ε). The greatest of
+    /// [`FitReport::uncertainties`]. 0 for a function, which is sampled as finely as needed.
     pub fn uncertainty(&self) -> f64 {
         self.uncertainties().map(|(_, uncertainty)| uncertainty).fold(0.0, f64::max)
     }
 
-    /// Times \[s\] from the first measured one to the last, and the uncertainty ε of the creep compliance J there: at each
-    /// time the compliance of the body is between J/(1 + ε) and J (1 + ε) for 95 % of tables whose errors are independent, and
-    /// a fixed part of each value. None for a function.
+    /// Times \[s\] from the first measured one to the last, and the uncertainty ε of the creep compliance J there: at
+    /// each time the compliance of the body is between J/(1 + ε) and J (1 + ε) for 95 % of tables whose errors are
+    /// independent, and a fixed part of each value. None for a function.
     ///
-    /// The interval includes the creep of other series that fit the samples equally well. For relaxation moduli without a
-    /// value at t = 0 these are bodies which have relaxed, before the first sample, from up to ten times its value: no
-    /// measurement shows it, and it slows the creep for many times as long.
+    /// The interval includes the creep of other series that fit the samples equally well. For relaxation moduli
+    /// without a value at t = 0 these are bodies which have relaxed, before the first sample, from up to ten times
+    /// its value: no measurement shows it, and it slows the creep for many times as long.
     pub fn uncertainties(&self) -> impl ExactSizeIterator<Item = (f64, f64)> + '_ {
         self.interval.iter().map(|&(time, logarithm)| (time, logarithm.exp_m1()))
     }
 
-    /// The warning, if any; for measurements only. Steps of a contact with such a material, but for one that begins late, have
+    /// The warning, if any; for measurements only. Steps of a contact with such a material, but for one that begins
+    /// late, have
     /// [`Warnings::UNCERTAIN_MATERIAL`](crate::contact::Warnings::UNCERTAIN_MATERIAL).
     pub fn warning(&self) -> Option<FitWarning> {
         self.warning

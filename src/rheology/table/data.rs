@@ -20,7 +20,8 @@ pub enum Experiment {
     Creep,
     /// Time \[s\] and relaxation modulus \[Pa\]: G in shear, E in tension.
     Relaxation,
-    /// Angular frequency \[rad/s\], storage and loss modulus \[Pa\]: G′, G″ in shear (rheometer), E′, E″ in tension (DMA).
+    /// Angular frequency \[rad/s\], storage and loss modulus \[Pa\]: G′, G″ in shear (rheometer), E′, E″ in tension
+    /// (DMA).
     Dynamic,
     /// Angular frequency \[rad/s\] and storage modulus \[Pa\] alone.
     Storage,
@@ -59,7 +60,8 @@ pub(crate) struct Layout {
 }
 
 impl Experiment {
-    /// The factor of its values that belongs to a factor of moduli, and the reverse: compliances change as the reciprocal.
+    /// The factor of its values that belongs to a factor of moduli, and the reverse: compliances change as the
+    /// reciprocal.
     pub(crate) fn of_modulus(self, factor: f64) -> f64 {
         if self == Experiment::Creep { 1.0 / factor } else { factor }
     }
@@ -118,8 +120,8 @@ pub(crate) fn validated(layout: Layout, rows: &mut [Row]) -> Result<Vec<Sample>>
     Ok(columns.iter().enumerate().flat_map(|(index, &(_, function))| sample(index, function)).collect())
 }
 
-/// The greatest deviation of sorted rows from a monotone curve: an error where it exceeds what the scatter of the rows around
-/// explains, or the relative `scatter`, if it is stated.
+/// The greatest deviation of sorted rows from a monotone curve: an error where it exceeds what the scatter of the
+/// rows around explains, or the relative `scatter`, if it is stated.
 pub(crate) fn wrong_way(layout: Layout, rows: &[Row], scatter: Option<f64>) -> Result<f64> {
     let Layout { table, columns, .. } = layout;
     let mut greatest: f64 = 0.0;
@@ -179,7 +181,8 @@ fn second_differences(values: &[f64]) -> Vec<f64> {
     values.windows(3).map(|w| ((w[0] - 2.0 * w[1] + w[2]) / w[1]).abs() / 6f64.sqrt()).collect()
 }
 
-/// The standard deviation of values around zero, from the median of their magnitudes, which a few outliers or a kink do not change.
+/// The standard deviation of values around zero, from the median of their magnitudes, which a few outliers or a kink
+/// do not change.
 pub(super) fn median_scatter(magnitudes: &[f64]) -> f64 {
     let mut sorted = magnitudes.to_vec();
     sorted.sort_by(f64::total_cmp);

@@ -30,8 +30,8 @@ impl Units {
     /// What the headings say, column by column: each must name its unit.
     pub const OF_HEADINGS: Units = Units { abscissa: None, value: None };
 
-    /// One unit of time in s, or of frequency in rad/s: 60 for minutes, 2π for Hz. One unit of compliance in 1/Pa, or of
-    /// modulus in Pa: 1e-9 for 1/GPa, 1e6 for MPa.
+    /// One unit of time in s, or of frequency in rad/s: 60 for minutes, 2π for Hz. One unit of compliance in 1/Pa, or
+    /// of modulus in Pa: 1e-9 for 1/GPa, 1e6 for MPa.
     ///
     /// # Errors
     /// If one is not finite and positive.
@@ -103,18 +103,20 @@ impl Measurements {
     /// Reads a text file of an `experiment`: the columns of [`Experiment`].
     ///
     /// [`TextTable`] says where a table begins, and [`TextFormat`] how it is written. Its headings name the columns by the first
-    /// word or symbol, whatever the case, and by their units; rows and columns may stand in any order. A dynamic table may have
-    /// tan δ or the phase angle in place of the loss modulus, and with them |G*| or |E*| in place of the storage modulus.
-    /// Without headings there are the columns of the experiment, in their order.
+    /// word or symbol, whatever the case, and by their units; rows and columns may stand in any order. A dynamic
+    /// table may have tan δ or the phase angle in place of the loss modulus, and with them |G*| or |E*| in place of
+    /// the storage modulus. Without headings there are the columns of the experiment, in their order.
     ///
-    /// Units come from the headings (`t [min]`, `J (1/GPa)`, `E/MPa`) with [`Units::OF_HEADINGS`]; other `units` are stated,
-    /// and headings must agree with them. Headings that name moduli or compliances in tension (E, E′, E″, D) make a table for
+    /// Units come from the headings (`t [min]`, `J (1/GPa)`, `E/MPa`) with [`Units::OF_HEADINGS`]; other `units` are
+    /// stated, and headings must agree with them. Headings that name moduli or compliances in tension (E, E′, E″, D)
+    /// make a table for
     /// [`Measurements::fit_tension`]; those in shear, for [`Measurements::fit`].
     ///
     /// # Errors
-    /// As [`Measurements::creep`]; if the file cannot be read ([`FileError::Unreadable`](crate::FileError::Unreadable)), or, each
-    /// reported with its line ([`TextError`](crate::TextError)): columns that no heading names, or several; a heading without a
-    /// unit; too few or too many columns; an entry that is not a number, or has the other decimal mark; a unit that differs
+    /// As [`Measurements::creep`]; if the file cannot be read
+    /// ([`FileError::Unreadable`](crate::FileError::Unreadable)), or, each reported with its line
+    /// ([`TextError`](crate::TextError)): columns that no heading names, or several; a heading without a unit; too
+    /// few or too many columns; an entry that is not a number, or has the other decimal mark; a unit that differs
     /// ([`TableError::Unit`]).
     pub fn from_csv(
         experiment: Experiment,
@@ -269,7 +271,8 @@ fn is_percentage(heading: &str) -> bool {
     of.is_some_and(|of| !of.trim_end().ends_with(|c: char| c.is_ascii_digit()))
 }
 
-/// A column with its unit: the one given for a field of [`Units`], with which the heading must agree, or the unit of the heading.
+/// A column with its unit: the one given for a field of [`Units`], with which the heading must agree, or the unit of
+/// the heading.
 fn sized(given: Option<(&'static str, Option<f64>)>, column: TakenColumn) -> Result<TakenColumn> {
     let Some((field, Some(given))) = given else {
         column.unit()?;

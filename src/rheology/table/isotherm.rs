@@ -76,9 +76,11 @@ impl Isotherm {
 }
 
 impl Isotherm {
-    /// Reads isotherms from one text file: the columns of [`Measurements::from_csv`], and one of the temperature in K or °C.
+    /// Reads isotherms from one text file: the columns of [`Measurements::from_csv`], and one of the temperature in K
+    /// or °C.
     ///
-    /// Rows belong to one isotherm if their temperatures, in order, are less than 1 K apart; its temperature is their mean.
+    /// Rows belong to one isotherm if their temperatures, in order, are less than 1 K apart; its temperature is their
+    /// mean.
     ///
     /// ```
     /// use viscocontact::TextFormat;

@@ -11,8 +11,9 @@ const NEAR: f64 = 0.5;
 /// Isotherms shifted along the axis of time (or frequency) until they form one curve at a reference
 /// temperature, which spans more decades than any isotherm (time–temperature superposition).
 ///
-/// The shift of each isotherm relative to its neighbour has the least difference of the logarithms of the values where
-/// the two overlap, each column relative to its own scatter; single outliers cost little. Vertical shifts: [`MasterCurve::with_vertical_shifts`].
+/// The shift of each isotherm relative to its neighbour has the least difference of the logarithms of the values
+/// where the two overlap, each column relative to its own scatter; single outliers cost little. Vertical shifts:
+/// [`MasterCurve::with_vertical_shifts`].
 ///
 /// ```
 /// use viscocontact::rheology::{Isotherm, MasterCurve, Measurements, Rheology, TimeTemperature};
@@ -39,13 +40,14 @@ pub struct MasterCurve {
     reference: f64,
     /// By temperature, ascending.
     isotherms: Vec<Isotherm>,
-    /// The shift of each isotherm from the reference. The disagreement belongs to the shift from the neighbouring isotherm.
+    /// The shift of each isotherm from the reference. The disagreement belongs to the shift from the neighbouring
+    /// isotherm.
     shifts: Vec<Shift>,
 }
 
 impl MasterCurve {
-    /// Finds the shift factors from the data alone. `reference` \[K\] must be the temperature of an isotherm within 0.5 K, as
-    /// temperatures of a file are means: the curve is at the temperature of the nearest isotherm.
+    /// Finds the shift factors from the data alone. `reference` \[K\] must be the temperature of an isotherm within
+    /// 0.5 K, as temperatures of a file are means: the curve is at the temperature of the nearest isotherm.
     ///
     /// # Errors
     /// If there is no isotherm, two have the same temperature, they measure different quantities, none is at the
@@ -55,8 +57,9 @@ impl MasterCurve {
     }
 
     /// [`MasterCurve::new`] with vertical shifts too: the values of an isotherm may be those at the reference times a factor
-    /// b_T, the same for storage and loss, as of rubbers (b_T near T/T_ref) and of specimens that were clamped anew. Where a
-    /// curve is nearly a power law, a factor and a shift can hardly be told apart: see [`MasterCurve::shift_errors`].
+    /// b_T, the same for storage and loss, as of rubbers (b_T near T/T_ref) and of specimens that were clamped anew.
+    /// Where a curve is nearly a power law, a factor and a shift can hardly be told apart: see
+    /// [`MasterCurve::shift_errors`].
     ///
     /// # Errors
     /// As [`MasterCurve::new`].
@@ -125,23 +128,24 @@ impl MasterCurve {
         self.of_each(|shift| shift.log.exp()).collect()
     }
 
-    /// Temperature \[K\] and vertical factor b_T of each isotherm, by temperature: at T all values are b_T times those at the
-    /// reference. 1 without vertical shifts.
+    /// Temperature \[K\] and vertical factor b_T of each isotherm, by temperature: at T all values are b_T times
+    /// those at the reference. 1 without vertical shifts.
     pub fn vertical_factors(&self) -> Vec<(f64, f64)> {
         self.of_each(|shift| shift.vertical.exp()).collect()
     }
 
-    /// Temperature \[K\] and standard error of log₁₀ a_T of each isotherm, by temperature; 0 at the reference, and with a law.
+    /// Temperature \[K\] and standard error of log₁₀ a_T of each isotherm, by temperature; 0 at the reference, and
+    /// with a law.
     ///
-    /// Neighbours are shifted one after the other, so that errors grow away from the reference. They include shifts that fit
-    /// nearly as well, as where a curve is nearly a power law.
+    /// Neighbours are shifted one after the other, so that errors grow away from the reference. They include shifts
+    /// that fit nearly as well, as where a curve is nearly a power law.
     pub fn shift_errors(&self) -> Vec<(f64, f64)> {
         self.of_each(|shift| decades(shift.error)).collect()
     }
 
-    /// Temperatures \[K\] of isotherms that storage and loss moduli would shift differently relative to their neighbours, by
-    /// more than their errors explain, and by how many decades: the body is not thermorheologically simple, or a modulus is
-    /// disturbed by the machine.
+    /// Temperatures \[K\] of isotherms that storage and loss moduli would shift differently relative to their
+    /// neighbours, by more than their errors explain, and by how many decades: the body is not thermorheologically
+    /// simple, or a modulus is disturbed by the machine.
     pub fn disagreements(&self) -> Vec<(f64, f64)> {
         self.of_each(|shift| decades(shift.disagreement)).filter(|(_, decades)| *decades > 0.0).collect()
     }
@@ -150,7 +154,8 @@ impl MasterCurve {
         self.isotherms.iter().zip(&self.shifts).map(move |(isotherm, shift)| (isotherm.temperature, value(shift)))
     }
 
-    /// The law of the shift factors themselves, a [table](TimeTemperature::table), with the vertical factors of the curve.
+    /// The law of the shift factors themselves, a [table](TimeTemperature::table), with the vertical factors of the
+    /// curve.
     ///
     /// # Errors
     /// If there is no temperature besides the reference.
@@ -178,8 +183,8 @@ impl MasterCurve {
         law.with_vertical_factors(&self.with_reference(rows))
     }
 
-    /// The WLF law through the shift factors: least squares in −ΔT/log₁₀ a_T = (C₂ + ΔT)/C₁. It has the vertical factors of the
-    /// curve, which end with its isotherms ([`TimeTemperature::extrapolated`]).
+    /// The WLF law through the shift factors: least squares in −ΔT/log₁₀ a_T = (C₂ + ΔT)/C₁. It has the vertical
+    /// factors of the curve, which end with its isotherms ([`TimeTemperature::extrapolated`]).
     ///
     /// # Errors
     /// If there are fewer than two temperatures besides the reference, or the factors do not follow such a law.
@@ -198,7 +203,8 @@ impl MasterCurve {
         self.with_own_vertical(TimeTemperature::wlf(c1, (y - slope * x) * c1, self.reference)?)
     }
 
-    /// The Arrhenius law through the shift factors: least squares in ln a_T over 1/T. It has the vertical factors of the curve, as
+    /// The Arrhenius law through the shift factors: least squares in ln a_T over 1/T. It has the vertical factors of
+    /// the curve, as
     /// [`MasterCurve::wlf`].
     ///
     /// # Errors
@@ -221,8 +227,8 @@ impl MasterCurve {
         self.of_each(|shift| shift.log).filter(|(temperature, _)| *temperature != self.reference)
     }
 
-    /// The points of the curve, with values as at the reference: reduced time \[s\] or angular frequency \[rad/s\], material function, value; from
-    /// the lowest temperature to the highest.
+    /// The points of the curve, with values as at the reference: reduced time \[s\] or angular frequency \[rad/s\],
+    /// material function, value; from the lowest temperature to the highest.
     pub fn points(&self) -> Vec<(f64, MaterialFunction, f64)> {
         let functions = self.isotherms[0].experiment.layout().columns.iter().map(|&(_, function)| function);
         let values =

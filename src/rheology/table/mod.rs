@@ -64,8 +64,8 @@ debug_by! {
 }
 
 impl Measurements {
-    /// Creep: a `table` of times ≥ 0 \[s\] and compliances \[1/Pa\], in any order. Columns `times` and `compliances` become
-    /// its rows by `std::iter::zip(times, compliances).collect::<Vec<_>>()`.
+    /// Creep: a `table` of times ≥ 0 \[s\] and compliances \[1/Pa\], in any order. Columns `times` and `compliances`
+    /// become its rows by `std::iter::zip(times, compliances).collect::<Vec<_>>()`.
     ///
     /// # Errors
     /// If there are fewer than four rows, a value is not finite and positive, or a time is negative or given twice:
@@ -76,9 +76,10 @@ impl Measurements {
 
     /// Relaxation: a `table` of times ≥ 0 \[s\] and moduli \[Pa\], in any order.
     ///
-    /// A table without a modulus at t = 0 does not show the relaxation before its first time, which slows the creep for many
-    /// times as long: after a drop to a tenth, creep is uncertain by a factor of two at the first time, and by 5 % at five
-    /// times as long or more. [`FitReport::uncertainties`] includes it, [`FitReport::warning`] reports it, and
+    /// A table without a modulus at t = 0 does not show the relaxation before its first time, which slows the creep
+    /// for many times as long: after a drop to a tenth, creep is uncertain by a factor of two at the first time, and
+    /// by 5 % at five times as long or more. [`FitReport::uncertainties`] includes it, [`FitReport::warning`] reports
+    /// it, and
     /// [`Rheology::measured`](crate::rheology::Rheology::measured) begins where it is below 5 %, so that shorter steps of a
     /// contact warn by [`Warnings::FASTER_THAN_MATERIAL`](crate::contact::Warnings::FASTER_THAN_MATERIAL).
     ///
@@ -97,7 +98,8 @@ impl Measurements {
         Measurements::from_pairs(Experiment::Relaxation, table)
     }
 
-    /// Dynamic moduli: a `table` of angular frequencies > 0 \[rad/s\], storage moduli and loss moduli \[Pa\], in any order.
+    /// Dynamic moduli: a `table` of angular frequencies > 0 \[rad/s\], storage moduli and loss moduli \[Pa\], in any
+    /// order.
     ///
     /// ```
     /// use viscocontact::rheology::{GeneralizedMaxwell, Measurements, Rheology};
@@ -132,9 +134,9 @@ impl Measurements {
         &self.columns
     }
 
-    /// The same with a known relative standard deviation of the values (0.05 for 5 %), in place of one that is judged from the
-    /// values themselves. Values may then deviate by six times as much from a monotone curve, and the best series by as much in
-    /// the root mean square, if this is more than 10 %.
+    /// The same with a known relative standard deviation of the values (0.05 for 5 %), in place of one that is judged
+    /// from the values themselves. Values may then deviate by six times as much from a monotone curve, and the best
+    /// series by as much in the root mean square, if this is more than 10 %.
     ///
     /// ```
     /// use viscocontact::rheology::{FitWarning, Measurements};
@@ -175,25 +177,26 @@ impl Measurements {
 
     /// The body that the table describes: a series with positive coefficients, by least squares of the relative misfit.
     ///
-    /// The series is a smooth curve through noise, with no more terms than needed. [`CreepSeries::report`] has its error,
-    /// and the values needed to plot data and fit. Relaxation and dynamic moduli, both in their relative misfit, are then
-    /// converted to creep exactly.
+    /// The series is a smooth curve through noise, with no more terms than needed. [`CreepSeries::report`] has its
+    /// error, and the values needed to plot data and fit. Relaxation and dynamic moduli, both in their relative
+    /// misfit, are then converted to creep exactly.
     ///
-    /// Over four to eight decades of smooth creep without noise, the error of J at and between the rows is below 0.1 % with
-    /// two rows per decade or more. With fewer it is below 0.3 % in most cases, and several percent at worst. Where the
-    /// rows do not determine J between them, [`FitReport::warning`] reports it, as do the steps of a contact
-    /// ([`Warnings::UNCERTAIN_MATERIAL`](crate::contact::Warnings::UNCERTAIN_MATERIAL)).
+    /// Over four to eight decades of smooth creep without noise, the error of J at and between the rows is below 0.1
+    /// % with two rows per decade or more. With fewer it is below 0.3 % in most cases, and several percent at worst.
+    /// Where the rows do not determine J between them, [`FitReport::warning`] reports it, as do the steps of a
+    /// contact ([`Warnings::UNCERTAIN_MATERIAL`](crate::contact::Warnings::UNCERTAIN_MATERIAL)).
     ///
     /// Outside the data: creep before the first time, or faster than the highest frequency, counts as elastic (the
-    /// compliance is between J_g of the fit and its value there). After the last time, or after 1/ω of the lowest frequency,
-    /// J is NaN, and a step of a contact fails with [`StepError::BeyondMaterial`](crate::contact::StepError::BeyondMaterial), unless you
-    /// choose [`CreepSeries::extrapolated`].
+    /// compliance is between J_g of the fit and its value there). After the last time, or after 1/ω of the lowest
+    /// frequency, J is NaN, and a step of a contact fails with
+    /// [`StepError::BeyondMaterial`](crate::contact::StepError::BeyondMaterial), unless you choose
+    /// [`CreepSeries::extrapolated`].
     ///
     /// # Errors
-    /// If a compliance decreases, a relaxation modulus increases, or a storage modulus decreases with the frequency, by more than
-    /// the scatter of the rows around explains ([`TableError::WrongWay`](crate::rheology::TableError)); if no series fits the
-    /// table ([`TableError::Inconsistent`](crate::rheology::TableError)); or if the headings of its file name
-    /// moduli in tension ([`TableError::Deformation`](crate::rheology::TableError)).
+    /// If a compliance decreases, a relaxation modulus increases, or a storage modulus decreases with the frequency,
+    /// by more than the scatter of the rows around explains ([`TableError::WrongWay`](crate::rheology::TableError));
+    /// if no series fits the table ([`TableError::Inconsistent`](crate::rheology::TableError)); or if the headings of
+    /// its file name moduli in tension ([`TableError::Deformation`](crate::rheology::TableError)).
     pub fn fit(&self) -> Result<CreepSeries> {
         self.fitted(Deformation::Shear)
     }

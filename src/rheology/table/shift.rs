@@ -1,9 +1,10 @@
 //! The shift of one isotherm relative to another.
 //!
-//! Every row of either isotherm is compared with the straight line through its neighbours in the other, in every column,
-//! relative to the scatter of the column. The logarithm of 1 + z² in place of z² makes outliers, and the end of a column that
-//! the machine spoils, cost little. The column that determines the shift best finds it first, by the fewest decades of the
-//! union, so that two ends which match by chance are not taken for the overlap; all columns refine it.
+//! Every row of either isotherm is compared with the straight line through its neighbours in the other, in every
+//! column, relative to the scatter of the column. The logarithm of 1 + z² in place of z² makes outliers, and the end
+//! of a column that the machine spoils, cost little. The column that determines the shift best finds it first, by the
+//! fewest decades of the union, so that two ends which match by chance are not taken for the overlap; all columns
+//! refine it.
 
 use super::data::{Row, median_scatter};
 use super::isotherm::Isotherm;
@@ -16,7 +17,8 @@ const TRIED: usize = 400;
 const LEAST_OVERLAP: f64 = 0.1;
 /// Relative scatter below which values are as good as exact: the line between two rows is no better.
 const LEAST_SCATTER: f64 = 2e-3;
-/// Least mean of ln(1 + z²): 0.53 of a normal deviate, and more with an outlier in thirty rows, of which each spoils three differences.
+/// Least mean of ln(1 + z²): 0.53 of a normal deviate, and more with an outlier in thirty rows, of which each spoils
+/// three differences.
 const EXPECTED: f64 = 0.75;
 /// Price of a decade of the union.
 const PER_DECADE: f64 = 4.0;
@@ -24,10 +26,11 @@ const PER_DECADE: f64 = 4.0;
 const AROUND: usize = 4;
 /// Shifts whose difference is less than this above the least are as good.
 const AS_GOOD: f64 = 8.0;
-/// The squared error over the squared error of independent differences: each is counted from both sides, and outliers count less.
+/// The squared error over the squared error of independent differences: each is counted from both sides, and outliers
+/// count less.
 const INFLATION: f64 = 6.0;
-/// Few differences tell their own scatter poorly: three deviations of Student's t with n degrees of freedom, squared, are about 1 + 6/n times as great as
-/// three of the normal law. Half of the differences are independent.
+/// Few differences tell their own scatter poorly: three deviations of Student's t with n degrees of freedom, squared,
+/// are about 1 + 6/n times as great as three of the normal law. Half of the differences are independent.
 const FEW: f64 = 12.0;
 /// Shifts that differ by less, in ln a, agree: 0.05 decades.
 const LEAST_DISAGREEMENT: f64 = 0.115;
@@ -59,7 +62,8 @@ struct Pair<'a> {
     isotherms: [&'a Isotherm; 2],
     /// Of each isotherm and column, at each row.
     slopes: [Vec<Vec<[f64; 2]>>; 2],
-    /// What a difference of each column costs as a rule. Were it less, isotherms would flee from an overlap that has outliers.
+    /// What a difference of each column costs as a rule. Were it less, isotherms would flee from an overlap that has
+    /// outliers.
     usual: Vec<f64>,
     /// Whether values may differ by a factor, the same in all columns.
     is_vertical: bool,
@@ -203,7 +207,8 @@ impl Pair<'_> {
     }
 }
 
-/// The distance of each inner row from the line between its neighbours, over its standard deviation for a scatter of one.
+/// The distance of each inner row from the line between its neighbours, over its standard deviation for a scatter of
+/// one.
 fn off_lines(isotherm: &Isotherm, column: usize) -> Vec<f64> {
     let points: Vec<(f64, f64)> =
         isotherm.rows.iter().map(|row| (isotherm.log_time(row), row.values[column].ln())).collect();
@@ -229,8 +234,9 @@ fn place(isotherm: &Isotherm, log_time: f64) -> Option<(usize, f64)> {
     (k < isotherm.rows.len() && (0.0..=1.0).contains(&part)).then_some((k, part))
 }
 
-/// The slope of a column over ln t at each row, the median of the slopes between the rows around, which outliers move little (P. K. Sen, J. Am. Stat.
-/// Assoc. 63, 1968), and the variance of such a slope by least squares, over the variance of a value.
+/// The slope of a column over ln t at each row, the median of the slopes between the rows around, which outliers move
+/// little (P. K. Sen, J. Am. Stat. Assoc. 63, 1968), and the variance of such a slope by least squares, over the
+/// variance of a value.
 fn slopes(isotherm: &Isotherm, column: usize) -> Vec<[f64; 2]> {
     let points: Vec<[f64; 2]> =
         isotherm.rows.iter().map(|row| [isotherm.log_time(row), row.values[column].ln()]).collect();

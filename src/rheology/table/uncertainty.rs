@@ -15,8 +15,8 @@ use crate::rheology::{CreepSpectrum, FitReport, FitWarning, MaterialFunction, Re
 
 /// Number of tables drawn.
 const DRAWN: usize = 16;
-/// Half the width of the interval over the standard deviation of the tables drawn: with it 95 % of tables are inside, as
-/// tests/materials/intervals.rs shows.
+/// Half the width of the interval over the standard deviation of the tables drawn: with it 95 % of tables are inside,
+/// as tests/materials/intervals.rs shows.
 const DEVIATIONS: f64 = 2.2;
 /// Times per decade at which the interval is computed.
 const PER_DECADE: f64 = 8.0;
@@ -131,8 +131,8 @@ impl Measured {
 }
 
 impl FitReport {
-    /// The report of measurements: their deviation from monotone, the deviation of two series that fit them, the interval of
-    /// their creep, and the report of the nearest series, by which they are systematically off.
+    /// The report of measurements: their deviation from monotone, the deviation of two series that fit them, the
+    /// interval of their creep, and the report of the nearest series, by which they are systematically off.
     pub(crate) fn of_measurements(
         self,
         wrong_way: f64,

@@ -24,9 +24,9 @@ impl ActiveSet {
         }
     }
 
-    /// Makes the pressure on A carry the force and moments of each body: at once, by scaling p and v, where the force of a
-    /// single body is the only load; else by the next direction. Where that cannot be, the last step is cut short, if it was a
-    /// search, `searched` long; else the body begins again.
+    /// Makes the pressure on A carry the force and moments of each body: at once, by scaling p and v, where the force
+    /// of a single body is the only load; else by the next direction. Where that cannot be, the last step is cut
+    /// short, if it was a search, `searched` long; else the body begins again.
     pub(super) fn balance(&mut self, shape: Shape, searched: f64, solve: &mut Solve<'_>) -> Result<(), usize> {
         let problem = solve.problem;
         let single = problem.bodies.len() == 1;
@@ -85,8 +85,8 @@ impl ActiveSet {
         Ok(())
     }
 
-    /// Removes from a converged pressure the imbalance of force and moments that rounding has left: too little to change v.
-    /// False if it is more than rounding.
+    /// Removes from a converged pressure the imbalance of force and moments that rounding has left: too little to
+    /// change v. False if it is more than rounding.
     pub(super) fn close_balance(&mut self, solve: &mut Solve<'_>) -> bool {
         let Solve { problem, ref stop, ref mut solution, .. } = *solve;
         problem.loaded_bodies().all(|body| {

@@ -4,12 +4,12 @@
 //!
 //! E(p) = ½ c p·Kp + gap·p   over   p ≥ 0 in balance with the loads.
 //!
-//! Pressures remain feasible throughout (J. Nocedal & S. Wright, *Numerical Optimization*, 2006, section 16.5; J. Moré &
-//! G. Toraldo, SIAM J. Optim. 1, 1991, for many cells at a time). On the set A conjugate gradients approach the minimum over
-//! pressures of either sign. A step that would make some of them negative is replaced by the better of two that do not: the same
-//! direction up to the first zero, or the direction towards the clipped and balanced end of the step, with its own exact
-//! line search. Cells at zero then leave A, and cells that penetrate join it with p = 0, which does not change E. E falls from
-//! step to step, so that no set returns.
+//! Pressures remain feasible throughout (J. Nocedal & S. Wright, *Numerical Optimization*, 2006, section 16.5; J.
+//! Moré & G. Toraldo, SIAM J. Optim. 1, 1991, for many cells at a time). On the set A conjugate gradients approach
+//! the minimum over pressures of either sign. A step that would make some of them negative is replaced by the better
+//! of two that do not: the same direction up to the first zero, or the direction towards the clipped and balanced end
+//! of the step, with its own exact line search. Cells at zero then leave A, and cells that penetrate join it with
+//! p = 0, which does not change E. E falls from step to step, so that no set returns.
 
 use super::iteration::Towards;
 use super::{ActiveSet, JOIN_OVER_RMS};
@@ -28,7 +28,8 @@ struct Gain {
 }
 
 impl Gain {
-    /// The gain of a step along a direction with Σ r d = `slope` and c Σ d·Kd = `curvature`, up to the minimum or to `most`.
+    /// The gain of a step along a direction with Σ r d = `slope` and c Σ d·Kd = `curvature`, up to the minimum or to
+    /// `most`.
     fn along(slope: f64, curvature: f64, most: f64) -> Gain {
         if slope <= 0.0 || curvature <= 0.0 {
             return Gain::default();
@@ -39,7 +40,8 @@ impl Gain {
 }
 
 impl ActiveSet {
-    /// Improves `solution` until its residual is below the tolerance, the iterations are spent, or rounding hides any gain.
+    /// Improves `solution` until its residual is below the tolerance, the iterations are spent, or rounding hides any
+    /// gain.
     pub(super) fn descend(&mut self, solve: &mut Solve<'_>) -> Result<Outcome, usize> {
         let (problem, stop) = (solve.problem, solve.stop);
         self.changes.clear();
@@ -54,7 +56,8 @@ impl ActiveSet {
                 return Ok(outcome);
             }
             let penetrates = state.penetration > JOIN_OVER_RMS * state.rms();
-            // cells at zero that blocked the step have left; where they joined again before any gain, they would block the next
+            // cells at zero that blocked the step have left; where they joined again before any gain, they would
+            // block the next
             if penetrates && !blocked {
                 joins_without_gain = if gained { 0 } else { joins_without_gain + 1 };
                 if joins_without_gain > MAX_JOINS_WITHOUT_GAIN {
@@ -174,7 +177,8 @@ mod tests {
     use crate::solver::Stop;
     use crate::solver::rigid_motion::Freedom;
 
-    /// The fall-back alone, from a bad guess, converges to the solution of the active set, on soft and on nearly rigid surfaces.
+    /// The fall-back alone, from a bad guess, converges to the solution of the active set, on soft and on nearly
+    /// rigid surfaces.
     #[test]
     fn it_converges_on_its_own() {
         let grid = Grid::square(12, 1.2).unwrap();

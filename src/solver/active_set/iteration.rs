@@ -6,8 +6,8 @@ use crate::solver::{ModeCoefficients, Outcome, Problem, ResidualSums, Solution, 
 /// Σ (r − mean)² is computed afresh, not from Σ r², where less than this fraction of Σ r² is left.
 const MIN_CENTRED_FRACTION: f64 = 1e-6;
 
-/// Penetration outside is computed anew where the motion of a tilting body has changed by more than this fraction of rms |r|
-/// since the penetration was computed.
+/// Penetration outside is computed anew where the motion of a tilting body has changed by more than this fraction of
+/// rms |r| since the penetration was computed.
 const MAX_TURN_OVER_RMS: f64 = 1e-6;
 
 /// Iterations without a new lowest residual after which no correction follows another one: a search comes between them.
@@ -26,13 +26,14 @@ pub(super) enum Towards {
     Preconditioned,
     /// r itself.
     Residual,
-    /// Zero: the residual is below the tolerance, and the direction makes the changes of the pressure alone. A z without
-    /// a line search could increase it again.
+    /// Zero: the residual is below the tolerance, and the direction makes the changes of the pressure alone. A z
+    /// without a line search could increase it again.
     Corrections,
 }
 
 impl ActiveSet {
-    /// Iterates from a guess until the solve ends, or stagnates. Fails with the body whose load no pressure can balance.
+    /// Iterates from a guess until the solve ends, or stagnates. Fails with the body whose load no pressure can
+    /// balance.
     pub(super) fn iterate(&mut self, solve: &mut Solve<'_>) -> Result<Outcome, usize> {
         let (problem, stop) = (solve.problem, solve.stop);
         self.start(solve)?;
@@ -94,7 +95,8 @@ impl ActiveSet {
         let (mut square, mut turned) = (0.0, 0.0_f64);
         let found = self.set.passes(problem, &mut self.bands).survey(a, &self.search, solution);
         for (body, found) in found.iter().enumerate() {
-            // The fit determines a change of the last motion: a motion that the cells do not determine remains as it was.
+            // The fit determines a change of the last motion: a motion that the cells do not determine remains as it
+            // was.
             let fit = self.set.fit(problem, body, found.residual_modes);
             solution.motions[body] = solution.motions[body].plus(-1.0, fit);
             let tilts = problem.bodies[body].tilts();
@@ -124,7 +126,8 @@ impl ActiveSet {
         self.set.passes(problem, &mut self.bands).residual(solution, &mut self.buffer)
     }
 
-    /// d ← z + β d without free motion on A; with pressures to bring to zero or into balance, d is the whole change of p.
+    /// d ← z + β d without free motion on A; with pressures to bring to zero or into balance, d is the whole change
+    /// of p.
     pub(super) fn find_direction(&mut self, towards: Towards, solve: &mut Solve<'_>) {
         let Solve { problem, solution, work, .. } = solve;
         // no longer than the last search: where M is too great an inverse, a longer one would not lower the residual
@@ -149,8 +152,8 @@ impl ActiveSet {
             shifts[body] = ModeCoefficients::default().plus(-1.0, fit);
             overlap += found.residual_image - dot(fit.0, found.image_modes);
         }
-        // β from z·Kd + β d·Kd = 0. A correction is not conjugate to the last direction: conjugacy would only spread the error
-        // of its length.
+        // β from z·Kd + β d·Kd = 0. A correction is not conjugate to the last direction: conjugacy would only spread
+        // the error of its length.
         let beta = if self.energy > 0.0 && !pending { -overlap / self.energy } else { 0.0 };
         // without a last direction, d holds values of an earlier solve
         if beta != 0.0 {
@@ -165,8 +168,8 @@ impl ActiveSet {
         }
     }
 
-    /// Adds the pending changes to the direction: pressures that leave are brought to zero and moved to the cells around, and the
-    /// pressure after the step is balanced.
+    /// Adds the pending changes to the direction: pressures that leave are brought to zero and moved to the cells
+    /// around, and the pressure after the step is balanced.
     fn correct_direction(&mut self, problem: &Problem<'_>, p: &[f64]) {
         let ActiveSet { set, bands, preconditioner, buffer: moved, shape, changes, .. } = self;
         let (direction, balances) = (&mut self.search.direction, &mut self.shifts);

@@ -7,8 +7,8 @@ use crate::parallel::for_each_band;
 use crate::solver::{ContactSet, Passes, Problem, ResidualSums, Search, Solution, Solve, Stop, add, cold_start};
 
 impl ActiveSet {
-    /// Sets A to {p > 0}, or to the cells that are likely to be in contact, and balances the pressure on A. Other cells that
-    /// carry pressure are to leave. Fails with the body whose load no pressure can balance.
+    /// Sets A to {p > 0}, or to the cells that are likely to be in contact, and balances the pressure on A. Other
+    /// cells that carry pressure are to leave. Fails with the body whose load no pressure can balance.
     pub(super) fn start(&mut self, solve: &mut Solve<'_>) -> Result<(), usize> {
         let Solve { problem, solution, .. } = solve;
         (self.energy, self.search_length, self.was_cut) = (0.0, f64::INFINITY, false);
@@ -47,15 +47,16 @@ impl ActiveSet {
         problem.rows().any(self.set.segments.outside(solution.pressure.len()).any(pressed))
     }
 
-    /// Takes cells into A that penetrate deeper than `least`, except cells that are about to leave: their negative pressure would
-    /// change the force.
+    /// Takes cells into A that penetrate deeper than `least`, except cells that are about to leave: their negative
+    /// pressure would change the force.
     pub(super) fn add_penetrating_cells(&mut self, problem: &Problem<'_>, least: f64, solution: &Solution) {
         let ContactSet { member, segments, .. } = &mut self.set;
         Passes { problem, segments, bands: &mut self.bands }.add_penetrating(least, solution, member);
         self.set.update(problem);
     }
 
-    /// Whether to remove cells of negative pressure: they dominate the residual, or (when `aggressive`) contribute a large share.
+    /// Whether to remove cells of negative pressure: they dominate the residual, or (when `aggressive`) contribute a
+    /// large share.
     pub(super) fn should_remove_tensile(
         &self,
         problem: &Problem<'_>,
@@ -69,8 +70,9 @@ impl ActiveSet {
         solved || aggressive && large
     }
 
-    /// Takes cells with negative pressure out of A, and cells whose pressure becomes negative by the pressure that is moved to them.
-    /// Where the others cannot carry the load, the last step is cut short instead, if it was a search, `searched` long.
+    /// Takes cells with negative pressure out of A, and cells whose pressure becomes negative by the pressure that is
+    /// moved to them. Where the others cannot carry the load, the last step is cut short instead, if it was a search,
+    /// `searched` long.
     pub(super) fn remove_tensile_cells(&mut self, searched: f64, solve: &mut Solve<'_>) -> Result<(), usize> {
         let Solve { problem, solution, .. } = solve;
         self.changes.leaving = true;
@@ -83,8 +85,8 @@ impl ActiveSet {
         self.balance(Shape::Punch, searched, solve)
     }
 
-    /// Goes back along the last direction, `step` long, to where the first pressure became zero: before that all pressures
-    /// were in balance. False if some were negative all the while.
+    /// Goes back along the last direction, `step` long, to where the first pressure became zero: before that all
+    /// pressures were in balance. False if some were negative all the while.
     pub(super) fn cut_step(&mut self, problem: &Problem<'_>, step: f64, solution: &mut Solution) -> bool {
         let Search { direction, image } = &self.search;
         let beyond = |p: f64, d: f64| if p < 0.0 { if d < 0.0 { p / d } else { f64::INFINITY } } else { 0.0 };

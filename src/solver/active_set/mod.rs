@@ -5,17 +5,19 @@
 //!
 //! z = P Eᵀ M E P r,  d = z + β d,  p += a d,  v += a K d
 //!
-//! with M ≈ K⁻¹ on residuals that E extends beyond A ([`Preconditioner`]), P the restriction to A less the free motions, β
-//! from conjugacy z·Kd + β d·Kd = 0 (which remains exact when cells join A) and a the exact minimum along d.
+//! with M ≈ K⁻¹ on residuals that E extends beyond A ([`Preconditioner`]), P the restriction to A less the free
+//! motions, β from conjugacy z·Kd + β d·Kd = 0 (which remains exact when cells join A) and a the exact minimum along
+//! d.
 //!
 //! An iteration costs one convolution, whatever happens to A:
 //!
-//! * Cells that penetrate join with p = 0, which changes no field. They do so when the penetration is large compared with the
-//!   residual ([`JOIN_OVER_RMS`]).
-//! * Cells whose pressure is negative leave when their error is large compared with the residual ([`LEAVE_OVER_RMS`]). The
-//!   *next* direction brings them to p = 0: it contains δ = −p on them, so that the convolution it needs anyway updates v.
-//!   Its length is then 1, and z enters it with the usual length ([`CORRECTION_LENGTH`]). Eᵀ moves their pressure
-//!   to the cells around, which keeps the force. Cells whose pressure becomes negative by the move leave with them.
+//! * Cells that penetrate join with p = 0, which changes no field. They do so when the penetration is large compared
+//!   with the residual ([`JOIN_OVER_RMS`]).
+//! * Cells whose pressure is negative leave when their error is large compared with the residual
+//!   ([`LEAVE_OVER_RMS`]). The *next* direction brings them to p = 0: it contains δ = −p on them, so that the
+//!   convolution it needs anyway updates v. Its length is then 1, and z enters it with the usual length
+//!   ([`CORRECTION_LENGTH`]). Eᵀ moves their pressure to the cells around, which keeps the force. Cells whose
+//!   pressure becomes negative by the move leave with them.
 //! * Where the force is out of balance, p and v are scaled together. With moments to balance, or several bodies, the
 //!   correction B y times a shape differs from cell to cell, and joins the next direction too.
 //! * A guess extrapolated from earlier steps comes with its own v.
@@ -43,8 +45,8 @@ const LEAVE_OVER_RMS: f64 = 0.1;
 /// c a of a direction that corrects the pressure and has no line search, unless the last search was shorter.
 const CORRECTION_LENGTH: f64 = 0.9;
 
-/// Pressures that leave are moved to the cells around. Pressures that carry more than this part of the force are dropped
-/// instead: the contact is another one.
+/// Pressures that leave are moved to the cells around. Pressures that carry more than this part of the force are
+/// dropped instead: the contact is another one.
 const MAX_MOVED_SHARE: f64 = 0.1;
 
 #[derive(Debug, Clone)]
@@ -53,11 +55,12 @@ pub(crate) struct ActiveSet {
     /// The active set A.
     set: ContactSet,
     bands: Bands,
-    /// Rounding of c K p of the guess: where an approach is given, the pressure may fall far below the pressure of the guess.
+    /// Rounding of c K p of the guess: where an approach is given, the pressure may fall far below the pressure of
+    /// the guess.
     guess_rounding: f64,
     changes: PendingChanges,
-    /// Whether the last step was cut short: cells that joined together may have held each other off, and the deepest one joins
-    /// alone.
+    /// Whether the last step was cut short: cells that joined together may have held each other off, and the deepest
+    /// one joins alone.
     was_cut: bool,
     search: Search,
     /// d·Kd; 0 if the next direction need not be conjugate to d.
@@ -68,11 +71,11 @@ pub(crate) struct ActiveSet {
     image_motions: Vec<ModeCoefficients>,
     /// The free motion of each body that is added to d.
     shifts: Vec<ModeCoefficients>,
-    /// A field that a method fills and reads under a name of its own: z, moved pressures and so on. Its values do not outlive
-    /// the method.
+    /// A field that a method fills and reads under a name of its own: z, moved pressures and so on. Its values do not
+    /// outlive the method.
     buffer: Vec<f64>,
-    /// The shape s of corrections of the balance, in the fall-back a second buffer: allocated by the first solve with a tilting
-    /// load, several bodies or the fall-back.
+    /// The shape s of corrections of the balance, in the fall-back a second buffer: allocated by the first solve with
+    /// a tilting load, several bodies or the fall-back.
     shape: Vec<f64>,
 }
 
@@ -103,7 +106,8 @@ impl PendingChanges {
 enum Shape {
     /// The pressure itself: right for a load that changes as a whole.
     Pressure,
-    /// Eᵀ 1, which is greater at the edge of A, like the pressure under a flat punch: nearly all of its displacement is rigid.
+    /// Eᵀ 1, which is greater at the edge of A, like the pressure under a flat punch: nearly all of its displacement
+    /// is rigid.
     Punch,
 }
 

@@ -91,7 +91,8 @@ impl HaloExchange {
         let mut sent = 0;
         for (rank, count) in counts.iter_mut().enumerate() {
             *count = 0;
-            // the rank of the row before the local rows needs the first of them, the rank of the row after them the last
+            // the rank of the row before the local rows needs the first of them, the rank of the row after them the
+            // last
             for (halo, k) in halo.rows.iter().zip([0, own.saturating_sub(1)]) {
                 if halo.as_ref().is_some_and(|halo| halo.rank == rank) {
                     write(k, &mut send[sent..sent + columns]);

@@ -14,27 +14,27 @@ pub(crate) use crate::solver::extension::halo::{HaloExchange, HaloRows};
 use crate::solver::extension::passes::{Blocks, Known, Operation, Pass, RowBuffers, SharedRows};
 use crate::solver::extension::weights::TRUST;
 
-/// E: from the cells of a set A to all cells, by means over blocks of 2 × 2 cells, over blocks of such blocks and so on, and
-/// bilinear interpolation back (a push–pull pyramid),
+/// E: from the cells of a set A to all cells, by means over blocks of 2 × 2 cells, over blocks of such blocks and so
+/// on, and bilinear interpolation back (a push–pull pyramid),
 ///
 /// x_l = w_l m_l + (1 − w_l) up(x_(l+1)),  m_(l+1) = Σ w_l m_l / Σ w_l over the block,  w_(l+1) = κ s/(1 + (κ − 1) s),
 ///
-/// where s is the mean of w_l over the block, and w_0 is 1 on A and 0 elsewhere; x = m on the coarsest level, a single block. E
-/// reproduces constants. Its transpose moves the values of all cells to A, and keeps their sum.
-/// Blocks hold the sums S = Σ w m over their parts, and the factor φ = κ/(4 + 4 (κ − 1) s). The weights are
-/// linear in φ: w m = φ S, and w = (κ − 4 φ)/(κ − 1).
+/// where s is the mean of w_l over the block, and w_0 is 1 on A and 0 elsewhere; x = m on the coarsest level, a
+/// single block. E reproduces constants. Its transpose moves the values of all cells to A, and keeps their sum.
+/// Blocks hold the sums S = Σ w m over their parts, and the factor φ = κ/(4 + 4 (κ − 1) s). The weights are linear in
+/// φ: w m = φ S, and w = (κ − 4 φ)/(κ − 1).
 ///
-/// An [`Attenuation`] multiplies x of one level before the next finer one is computed: near A, within the reach, the residual is
-/// extended as it is, beyond it times the factor.
+/// An [`Attenuation`] multiplies x of one level before the next finer one is computed: near A, within the reach, the
+/// residual is extended as it is, beyond it times the factor.
 ///
 /// Axes that are not periodic are mirrored at their ends, as the symmetric parts of a grid are.
 ///
-/// Every row of a level is computed from finished rows of another one: threads share the rows, and the result does not depend on
-/// their number.
+/// Every row of a level is computed from finished rows of another one: threads share the rows, and the result does
+/// not depend on their number.
 ///
-/// Where ranks share the cells, their bands are whole rows of blocks of 16 × 16 cells. Of blocks of 2 × 2, 4 × 4 and 8 × 8 cells
-/// a rank holds the local rows, and a halo row where a pass needs it. Larger blocks, a 256th as many numbers as
-/// there are cells, are gathered, and every rank computes all of them.
+/// Where ranks share the cells, their bands are whole rows of blocks of 16 × 16 cells. Of blocks of 2 × 2, 4 × 4 and
+/// 8 × 8 cells a rank holds the local rows, and a halo row where a pass needs it. Larger blocks, a 256th as many
+/// numbers as there are cells, are gathered, and every rank computes all of them.
 #[derive(Debug, Clone)]
 pub(crate) struct Extension {
     /// The cells, and which of their rows are local.
@@ -95,7 +95,8 @@ struct Level {
     local: Option<Vec<f64>>,
 }
 
-/// Greatest number of levels of which a rank holds the local rows alone: blocks of the next level are as high as a band.
+/// Greatest number of levels of which a rank holds the local rows alone: blocks of the next level are as high as a
+/// band.
 const MOST_LOCAL: usize = 3;
 
 /// Number of levels over so many cells: the last one is a single block.
@@ -208,7 +209,8 @@ impl Extension {
         self.descend(Operation::Interpolate, field, member, self.attenuation);
     }
 
-    /// The transpose: moves the values of all cells to the set, and leaves zero elsewhere. The unbounded one keeps the sum.
+    /// The transpose: moves the values of all cells to the set, and leaves zero elsewhere. The unbounded one keeps
+    /// the sum.
     pub(crate) fn gather(&mut self, field: &mut [f64], member: &[bool], kind: ExtensionKind) {
         let attenuation = self.attenuation.filter(|_| kind == ExtensionKind::Attenuated);
         self.ascend(Operation::Restrict, field, member, attenuation);

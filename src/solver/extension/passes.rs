@@ -180,7 +180,8 @@ impl Pass<'_> {
         }
     }
 
-    /// The rows of the level that row `i` of blocks reaches, and the part of each row that it gets: 0 for rows beyond the end.
+    /// The rows of the level that row `i` of blocks reaches, and the part of each row that it gets: 0 for rows beyond
+    /// the end.
     #[inline(always)]
     fn parts(&self, i: usize) -> ([usize; 4], [f64; 4]) {
         let (n1, rows) = (self.fine[0], 2 * self.fine[0].div_ceil(2));

@@ -39,8 +39,8 @@ impl Levels {
         }
     }
 
-    /// How much of a change of the depth is left after so many steps like the last one, about: all of it where a fluid is under a
-    /// force or apart; the elastic response that is left and a spring bring it back.
+    /// How much of a change of the depth is left after so many steps like the last one, about: all of it where a
+    /// fluid is under a force or apart; the elastic response that is left and a spring bring it back.
     pub(in crate::states) fn lasting(&self, states: &ElasticStates, demand: Demand, steps: f64) -> f64 {
         let (mean, left) = (self.history.stiffness_over(steps), self.history.rule().equilibrium());
         match demand {
@@ -52,16 +52,16 @@ impl Levels {
         }
     }
 
-    /// The most that a step may be longer than the one before, both taken whole and in halves, so that the rule has the same order in both:
-    /// the whole follows half of the step before.
+    /// The most that a step may be longer than the one before, both taken whole and in halves, so that the rule has
+    /// the same order in both: the whole follows half of the step before.
     pub(in crate::states) fn longest_growth(&self) -> f64 {
         0.499 * self.history.rule().longest_continued()
     }
 
-    /// How far apart two outcomes of one step are, the other one taken in parts: the greatest |∫ δX dδ| from above, and the greatest |∫ δX dl|
-    /// from below over the compliance, for X = W and X the strains as far as they can raise a free surface. This is the most that the
-    /// difference can ever add to a depth and to a force. The `cuts` belong to the other outcome. Levels
-    /// that were `swept` count so much.
+    /// How far apart two outcomes of one step are, the other one taken in parts: the greatest |∫ δX dδ| from above,
+    /// and the greatest |∫ δX dl| from below over the compliance, for X = W and X the strains as far as they can
+    /// raise a free surface. This is the most that the difference can ever add to a depth and to a force. The `cuts`
+    /// belong to the other outcome. Levels that were `swept` count so much.
     pub(in crate::states) fn distance(
         &mut self,
         states: &ElasticStates,

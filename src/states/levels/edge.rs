@@ -6,8 +6,9 @@ use crate::states::curve::ElasticStates;
 use crate::states::levels::{Demand, Levels, Wanted};
 
 impl Levels {
-    /// By how much Σ W Δl of the levels that the edge meets in a step is greater at its end, if nothing presses on them, because they move with
-    /// the edge: it passes them one by one, and W of their mean is the part that it has passed. Continues what it passed in the steps before.
+    /// By how much Σ W Δl of the levels that the edge meets in a step is greater at its end, if nothing presses on
+    /// them, because they move with the edge: it passes them one by one, and W of their mean is the part that it has
+    /// passed. Continues what it passed in the steps before.
     pub(super) fn lead(&self) -> f64 {
         self.history.continued(self.passed).max(0.0)
     }

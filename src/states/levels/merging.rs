@@ -5,21 +5,22 @@ use crate::states::levels::{Group, Levels};
 
 /// Groups are merged when there are so many more, as a part of those after the last time, and these in any case.
 const MORE: [usize; 2] = [16, 8];
-/// The error of merging is relative to the force that the groups below carry and to their depth. This is the least of both that counts, as a
-/// part of the whole force and depth.
+/// The error of merging is relative to the force that the groups below carry and to their depth. This is the least of
+/// both that counts, as a part of the whole force and depth.
 const LEAST: f64 = 1e-4;
 
 /// Share of the error that merging uses: the contact area errs by up to ten times as much as the depth.
 const SHARE: f64 = 0.9;
-/// Share of the error for the depth of held groups and the force of free ones. A merged group keeps the force or the depth: weighted by the
-/// other widths its mean strain is another, and these errors of all groups add up where the load falls far at once.
+/// Share of the error for the depth of held groups and the force of free ones. A merged group keeps the force or the
+/// depth: weighted by the other widths its mean strain is another, and these errors of all groups add up where the
+/// load falls far at once.
 const OTHER: f64 = 0.07;
 
 impl Levels {
-    /// Merges neighbours, both held or both free, where a later step that ends within the merged group errs by at most about `error`, in
-    /// depth and in force, relative to those with a cut at its top. Let A be the greatest difference of the strains of both: what a cut inside
-    /// leaves out is a profile of slope 2 A over the sum of both widths, so it errs by A/4 times this sum. Held groups keep their force,
-    /// free ones the depth.
+    /// Merges neighbours, both held or both free, where a later step that ends within the merged group errs by at
+    /// most about `error`, in depth and in force, relative to those with a cut at its top. Let A be the greatest
+    /// difference of the strains of both: what a cut inside leaves out is a profile of slope 2 A over the sum of both
+    /// widths, so it errs by A/4 times this sum. Held groups keep their force, free ones the depth.
     pub(in crate::states) fn merge(&mut self, states: &ElasticStates, error: f64) {
         let Some(last) = self.groups.last().copied().filter(|_| self.groups.len() >= self.merge_from) else { return };
         let (held, reach, compliance) = (self.held(), states.reach(), self.history.rule().compliance());

@@ -26,8 +26,8 @@ pub(super) enum Demand {
     Depth { depth: f64, give: f64 },
 }
 
-/// A level c, and how it is found: δ(c) + `give` c = `sum`; `give` is infinite where it does not depend on the states. Levels that the edge meets
-/// have this `lead`, 0 if they have none.
+/// A level c, and how it is found: δ(c) + `give` c = `sum`; `give` is infinite where it does not depend on the
+/// states. Levels that the edge meets have this `lead`, 0 if they have none.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Wanted {
     pub(super) level: f64,
@@ -115,7 +115,8 @@ impl Levels {
         self.history.fits(&other.history, self.groups.len()) && is_finite && tops().is_sorted()
     }
 
-    /// How many times stiffer the body is at once than over the step predicted last; 1 without elastic response, where no levels lead.
+    /// How many times stiffer the body is at once than over the step predicted last; 1 without elastic response,
+    /// where no levels lead.
     pub(super) fn relaxed(&self) -> f64 {
         if self.has_dashpot() {
             return 1.0;
@@ -205,8 +206,8 @@ impl Levels {
         Ok(wanted)
     }
 
-    /// The level after a jump of a body without elastic response, which moves no surface: the present level if the demand is met already,
-    /// 0 if nothing presses on the surface any more.
+    /// The level after a jump of a body without elastic response, which moves no surface: the present level if the
+    /// demand is met already, 0 if nothing presses on the surface any more.
     fn level_without_response(&self, demand: Demand) -> Option<f64> {
         let is_met = |present: f64, wanted: f64| (present - wanted).abs() <= ROUNDING * present.abs().max(wanted.abs());
         let (is_met, presses) = match demand {
@@ -283,7 +284,8 @@ impl Levels {
         self.groups.insert(group, Group { top: level, motions: states.motions(level), traction: 0.0 });
     }
 
-    /// Releases all groups where they are; takes no step. As after any jump, the past does not determine how they continue.
+    /// Releases all groups where they are; takes no step. As after any jump, the past does not determine how they
+    /// continue.
     fn release(&mut self) {
         self.history.reset_differences();
         self.groups.iter_mut().for_each(|group| group.traction = 0.0);

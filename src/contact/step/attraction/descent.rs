@@ -1,13 +1,15 @@
 //! Steps of periodic bodies: conjugate gradients in the gap.
 //!
-//! On a period K has an inverse M, wave by wave. With the lift x = h − z of the surface over its gap z before any traction, the creep of the past
-//! included, the net traction of a state in balance is q = M x/c + p, and its energy E = Σ ½ x (q + p) − ∫ₕ^∞ s. Only the stiffness of the mean and
-//! p differ between loads: a force fixes the mean of q, a spring sets its stiffness in series with the bodies, and a given approach of bodies
-//! whose mean is held fixes the mean of h, with a multiplier λ. So the loads are in balance in every iteration.
+//! On a period K has an inverse M, wave by wave. With the lift x = h − z of the surface over its gap z before any
+//! traction, the creep of the past included, the net traction of a state in balance is q = M x/c + p, and its energy
+//! E = Σ ½ x (q + p) − ∫ₕ^∞ s. Only the stiffness of the mean and p differ between loads: a force fixes the mean of
+//! q, a spring sets its stiffness in series with the bodies, and a given approach of bodies whose mean is held fixes
+//! the mean of h, with a multiplier λ. So the loads are in balance in every iteration.
 //!
-//! E falls along conjugate directions (Polak & Ribière, Rev. Fr. Inform. Rech. Opér. 16, 1969) of the gradient r = q + s(h) − λ on the cells that are
-//! open or open, with K as their preconditioner; the wall is a bound (two-metric projection, Bertsekas, SIAM J. Control Optim. 20, 1982). A step
-//! along them is exact without transforms. Where E bends down along a direction, surfaces jump: far from balance the step follows the convex part
+//! E falls along conjugate directions (Polak & Ribière, Rev. Fr. Inform. Rech. Opér. 16, 1969) of the gradient
+//! r = q + s(h) − λ on the cells that are open or open, with K as their preconditioner; the wall is a bound
+//! (two-metric projection, Bertsekas, SIAM J. Control Optim. 20, 1982). A step along them is exact without
+//! transforms. Where E bends down along a direction, surfaces jump: far from balance the step follows the convex part
 //! of E, which stays in the valley of the state before, and near balance it leads to the first minimum.
 
 use std::sync::atomic::Ordering;
@@ -30,17 +32,19 @@ const SHORTER: f64 = 0.4;
 const SHORTENINGS: usize = 12;
 /// Rounding of E, over the sum of its parts.
 const ROUNDING: f64 = 1e-13;
-/// At this curvature over the curvature of the convex part the tolerance of r is what was asked; below, r is to be smaller by the same factor, since the error
-/// is r over the curvature. The least of so many iterations counts.
+/// At this curvature over the curvature of the convex part the tolerance of r is what was asked; below, r is to be
+/// smaller by the same factor, since the error is r over the curvature. The least of so many iterations counts.
 const SOFT: f64 = 0.2;
 const REMEMBERED: usize = 8;
 /// A mode that is soft shows in the curvature once stiff ones are out of r: after so many iterations.
 const LEAST_MEASURED: usize = 3;
 const SMALLEST: f64 = 1e-3;
-/// Before any iteration r may be smooth, as what the far field has left is, and is worth more: it is to be smaller by this factor.
+/// Before any iteration r may be smooth, as what the far field has left is, and is worth more: it is to be smaller by
+/// this factor.
 const SMOOTH: f64 = 0.1;
-/// Where the curvature was less than this along some direction, the softest one is looked for before the step ends; and so often at most, as long as it is
-/// softer than this at its end. Where the state before was stiffer than this, and the attraction no steeper since, none is looked for.
+/// Where the curvature was less than this along some direction, the softest one is looked for before the step ends;
+/// and so often at most, as long as it is softer than this at its end. Where the state before was stiffer than this,
+/// and the attraction no steeper since, none is looked for.
 const SUSPECT: f64 = 0.85;
 const VERY_SOFT: f64 = 0.005;
 const NEAR_FOLD: f64 = 0.25;
@@ -68,7 +72,8 @@ pub(super) struct Balance {
     pub(super) inverse: [f64; 2],
 }
 
-/// A descent in the gap: what it reads, and what it writes. In the trial x takes the place of the potential, q of the attraction, and r of the pressure.
+/// A descent in the gap: what it reads, and what it writes. In the trial x takes the place of the potential, q of the
+/// attraction, and r of the pressure.
 pub(super) struct Descent<'a> {
     pub(super) problem: &'a AttractedStep<'a>,
     pub(super) balance: Balance,
@@ -146,7 +151,8 @@ impl AttractedStep<'_> {
         Balance { compliance: c, of_mean, offset, soft, held, inverse: [stiffness, compliance] }
     }
 
-    /// Writes z, s, K (z − s) and the motion of the guess of a descent: extrapolated, or of undeformed bodies, which just touch under a force.
+    /// Writes z, s, K (z − s) and the motion of the guess of a descent: extrapolated, or of undeformed bodies, which
+    /// just touch under a force.
     pub(super) fn begin_in_gap(&self, window: &Window, trial: &mut Trial) {
         let (state, step, rows) = (self.state, self.step, self.state.held.region.rows());
         self.open_gap(window, trial);

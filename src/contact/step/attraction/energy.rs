@@ -26,8 +26,9 @@ pub(super) struct Found {
 }
 
 impl AttractedStep<'_> {
-    /// Energy and change of the pass; writes s at the gap that it led to in place of the gap of its problem. The energy is the value of the Lagrangian, in which
-    /// the error of the pass enters with its square; the far field is a part of the gap.
+    /// Energy and change of the pass; writes s at the gap that it led to in place of the gap of its problem. The
+    /// energy is the value of the Lagrangian, in which the error of the pass enters with its square; the far field is
+    /// a part of the gap.
     pub(super) fn find(&self, own: &mut Attracted, trial: &mut Trial) -> Found {
         let AttractedStep { state, law, given: [c, _], .. } = *self;
         let (rows, solution, gap) = (state.held.region.rows(), &trial.solution, &mut trial.gap);
@@ -56,8 +57,8 @@ impl AttractedStep<'_> {
         Found { energy, scale: parts + pressed.abs() + f64::MIN_POSITIVE, change, displaced }
     }
 
-    /// The energy over the area of a cell, and the sum of its parts, of a state with the free motion `motion`, from z − s, K (z − s), the gap and the
-    /// work of the wall of a cell.
+    /// The energy over the area of a cell, and the sum of its parts, of a state with the free motion `motion`, from
+    /// z − s, K (z − s), the gap and the work of the wall of a cell.
     fn energy(&self, motion: RigidMotion, cell: impl Fn(usize) -> [f64; 4] + Sync) -> [f64; 2] {
         let AttractedStep { state, wanted, law, given: [c, _], .. } = *self;
         let [elastic, attracted, wall] = state.held.region.rows().sum_terms(|k| {
@@ -86,8 +87,8 @@ impl AttractedStep<'_> {
         }
     }
 
-    /// The energy over the area of a cell, and the sum of its parts, of a state with the potential K (z − s), in the gap before any traction: the
-    /// wall holds its cells while this gap changes by what a step begins with.
+    /// The energy over the area of a cell, and the sum of its parts, of a state with the potential K (z − s), in the
+    /// gap before any traction: the wall holds its cells while this gap changes by what a step begins with.
     fn energy_of(&self, solution: &Solution, motion: RigidMotion, gap: &[f64]) -> [f64; 2] {
         let (state, c) = (self.state, self.given[0]);
         let Solution { pressure, attraction, potential, .. } = solution;
@@ -113,8 +114,8 @@ impl AttractedStep<'_> {
         sum == 0.0 && (0..trial.gap.len()).any(pulls)
     }
 
-    /// What the energy bends up on the straight way between two states, in the gap of the trial: Σ(Δq cKΔq + k Δω²), and ΣΔs Δh of the attraction, over the area
-    /// of a cell.
+    /// What the energy bends up on the straight way between two states, in the gap of the trial: Σ(Δq cKΔq + k Δω²),
+    /// and ΣΔs Δh of the attraction, over the area of a cell.
     fn bends_up(&self, gap: &[f64], [before, now]: [(&Solution, RigidMotion); 2]) -> [f64; 2] {
         let (state, law, c) = (self.state, self.law, self.given[0]);
         let [convex, softened] = state.held.region.rows().sum_terms(|k| {
@@ -130,8 +131,8 @@ impl AttractedStep<'_> {
         [convex + self.of_spring(now.1.approach - before.1.approach), softened]
     }
 
-    /// By what part of its convex part the energy bends up in the direction of the last step. Beside a fold surfaces move along the mode that is soft, in which
-    /// a small residual is a great error.
+    /// By what part of its convex part the energy bends up in the direction of the last step. Beside a fold surfaces
+    /// move along the mode that is soft, in which a small residual is a great error.
     pub(super) fn softness(&self, trial: &Trial) -> f64 {
         let ends = [&self.state.previous, &self.state.held.current];
         let [convex, softened] = self.bends_up(&trial.gap, ends.map(|at| (&at.solution, self.free_motion(at))));

@@ -1,8 +1,9 @@
 //! The edge of a line contact that runs over many cells within a step.
 //!
-//! An iteration in the gap moves a running edge by about the zone in which the attraction acts. Where cells
-//! were lost several times while the residual did not fall, the profile beside the edge is tried further on: by the cells just lost, after each success by twice as many, and by at most an eighth of the
-//! cells that are left, since the edge may stop. The trial is kept where the energy falls.
+//! An iteration in the gap moves a running edge by about the zone in which the attraction acts. Where cells were lost
+//! several times while the residual did not fall, the profile beside the edge is tried further on: by the cells just
+//! lost, after each success by twice as many, and by at most an eighth of the cells that are left, since the edge may
+//! stop. The trial is kept where the energy falls.
 
 /// Losses count anew where the residual falls to this part, or below so much of the greatest traction.
 const FALLEN: f64 = 0.3;
@@ -38,7 +39,8 @@ impl Front {
         Front { is_line, folded, touching: 0, losses: 0, residual: 0.0, span: 1 }
     }
 
-    /// Looks at the residual, over the greatest traction, and at which cells touch; returns how the profile is to be moved.
+    /// Looks at the residual, over the greatest traction, and at which cells touch; returns how the profile is to be
+    /// moved.
     pub(super) fn look(&mut self, residual: f64, cells: usize, touches: impl Fn(usize) -> bool) -> Option<Moved> {
         if !self.is_line {
             return None;

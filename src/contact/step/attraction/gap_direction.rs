@@ -10,8 +10,8 @@ use crate::sum::scattered;
 
 /// Least curvature of E along a direction, over the curvature of its convex part.
 const LEAST_CURVATURE: f64 = 1e-3;
-/// Where the greatest |r| is a smaller part of the greatest traction, a step of negative curvature leads to the first minimum; else it has the
-/// length of so many steps of the convex part.
+/// Where the greatest |r| is a smaller part of the greatest traction, a step of negative curvature leads to the first
+/// minimum; else it has the length of so many steps of the convex part.
 const NEAR: f64 = 0.1;
 const LONGEST: f64 = 4.0;
 /// What a line search leaves of the slope, and how often it tries.
@@ -19,15 +19,18 @@ const SLOPE_LEFT: f64 = 0.1;
 const TRIES: usize = 10;
 /// A direction descends by this part of the steepest one, or the search begins anew.
 const LEAST_DESCENT: f64 = 1e-3;
-/// The softest direction is looked for in at most so many turns: until it is clearly negative, or the quotient is known to this part of the curvature.
+/// The softest direction is looked for in at most so many turns: until it is clearly negative, or the quotient is
+/// known to this part of the curvature.
 const MOST_TURNS: usize = 100;
 const NEGATIVE: f64 = -1e-2;
 const PRECISE: f64 = 0.2;
 /// What rounding leaves of a direction that is exact.
 const EXHAUSTED: f64 = 1e-6;
-/// The search goes on until a direction of quotient 0 would have grown by half this power of e beyond the direction that is found.
+/// The search goes on until a direction of quotient 0 would have grown by half this power of e beyond the direction
+/// that is found.
 const GROWN: f64 = 8.0;
-/// At a curvature κ of its softest direction a state is about κ² short of a fold, in r: the descent ends where r is below this part of κ², or below the least.
+/// At a curvature κ of its softest direction a state is about κ² short of a fold, in r: the descent ends where r is
+/// below this part of κ², or below the least.
 const FOLD: f64 = 0.05;
 const LEAST_FOLD: f64 = 1e-9;
 /// The greatest change of the gap at first on the way from a state that is unstable, in ranges.
@@ -120,7 +123,8 @@ impl Descent<'_> {
             }
         });
         if balance.held {
-            // cells of the wall that open do so at the cost of the open ones: a shift of all cells would lift pressed ones
+            // cells of the wall that open do so at the cost of the open ones: a shift of all cells would lift pressed
+            // ones
             let turned = &*direction;
             let [sum, open] = rows.sum_terms(|k| Some([turned[k], if gap[k] + x[k] > 0.0 { 1.0 } else { 0.0 }]));
             let level = sum / f64::max(open, 1.0);
@@ -188,13 +192,15 @@ impl Descent<'_> {
         attracted
     }
 
-    /// Whether r is so small that the descent may end, at this curvature, and beside the fold that the softest direction may show.
+    /// Whether r is so small that the descent may end, at this curvature, and beside the fold that the softest
+    /// direction may show.
     pub(super) fn ends(&self, gradient: Gradient, soft: f64, softest: Option<f64>) -> bool {
         let fold = softest.map_or(1.0, |soft| (FOLD * soft * soft).max(LEAST_FOLD));
         gradient.greatest <= fold.min(self.own.exactness * self.problem.tolerance(soft))
     }
 
-    /// What the least curvature of the state before the step was found to be, less the greatest rise of −s′ since, over its greatest value.
+    /// What the least curvature of the state before the step was found to be, less the greatest rise of −s′ since,
+    /// over its greatest value.
     pub(super) fn least_stiffness(&self) -> f64 {
         let Descent { problem, window, trial, .. } = self;
         let (state, law, initial) = (problem.state, problem.law, window.gap(&problem.step.indenter));
@@ -209,9 +215,11 @@ impl Descent<'_> {
         state.held.current.solution.stiffness - most / problem.scene.ground.softening
     }
 
-    /// Looks for the direction of the open cells along which E bends up least, over what its convex part does: by conjugate gradients for the quotient
-    /// (Bradbury & Fletcher, Numer. Math. 9, 1966), from a random direction: the last one has the symmetry of the state, and may have none of the one that breaks it.
-    /// Writes it, with its M d/c, so long that it changes the gap by [`SPAN`] ranges; returns the quotient. r and q make room; q is computed afresh.
+    /// Looks for the direction of the open cells along which E bends up least, over what its convex part does: by
+    /// conjugate gradients for the quotient (Bradbury & Fletcher, Numer. Math. 9, 1966), from a random direction: the
+    /// last one has the symmetry of the state, and may have none of the one that breaks it. Writes it, with its M
+    /// d/c, so long that it changes the gap by [`SPAN`] ranges; returns the quotient. r and q make room; q is
+    /// computed afresh.
     pub(super) fn softest(&mut self, look: usize) -> f64 {
         let Descent { problem, balance, inverse, own, window, trial, counts } = self;
         let (law, rows, c) = (problem.law, window.kernel.rows().clone(), balance.compliance);
@@ -238,7 +246,8 @@ impl Descent<'_> {
             field.iter_mut().enumerate().for_each(|(k, y)| *y = if is_open(k) { c * *y + mean } else { 0.0 });
             level(field);
         };
-        // another for each look of a descent: of two modes that are soft alike the last one has found a mix, and would find none of what is left
+        // another for each look of a descent: of two modes that are soft alike the last one has found a mix, and
+        // would find none of what is left
         let salt = look * gap.len();
         let InGap { direction: v, image, lift: p, traction: image_of_p } = own.in_gap();
         v.iter_mut().enumerate().for_each(|(k, v)| *v = softening[k] * (2.0 * scattered(salt + k) - 1.0));
@@ -289,7 +298,8 @@ impl Descent<'_> {
             });
             let square = (steepest / convex).max(0.0);
             let left = square.sqrt();
-            // of a random direction, as K smooths it, a long wave is about the part N^-¼; one of quotient 0 gains e^(2√q) a turn on one of quotient q
+            // of a random direction, as K smooths it, a long wave is about the part N^-¼; one of quotient 0 gains
+            // e^(2√q) a turn on one of quotient q
             let grown = 4.0 * (1.0 - share).abs().sqrt() * turn as f64 >= 0.5 * (v.len() as f64).ln() + GROWN;
             if left <= EXHAUSTED || grown && left <= PRECISE * (1.0 - share).abs() {
                 break;

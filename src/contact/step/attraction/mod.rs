@@ -1,17 +1,18 @@
 //! Steps of surfaces that attract each other.
 //!
-//! With the attraction s(h) the step has h = gap + c K (z − s(h)) − motion ≥ 0, z ≥ 0, z h = 0, and z − s carries the load: z is the pressure
-//! of the wall. Since s never grows with h, the energy is a convex function plus a concave one, −Σ ∫ₕ^∞ s. A pass takes s from the gap of the
-//! pass before, a tangent of the concave part, and solves the contact problem of the gap − c K s under the load + Σ s: it lowers the energy
-//! (Le Thi & Pham, Ann. Oper. Res. 133, 2005), and where no pass changes s any more, the state is stationary.
+//! With the attraction s(h) the step has h = gap + c K (z − s(h)) − motion ≥ 0, z ≥ 0, z h = 0, and z − s carries the
+//! load: z is the pressure of the wall. Since s never grows with h, the energy is a convex function plus a concave
+//! one, −Σ ∫ₕ^∞ s. A pass takes s from the gap of the pass before, a tangent of the concave part, and solves the
+//! contact problem of the gap − c K s under the load + Σ s: it lowers the energy (Le Thi & Pham, Ann. Oper. Res. 133,
+//! 2005), and where no pass changes s any more, the state is stationary.
 //!
-//! Passes are extrapolated by Anderson's method (J. ACM 12, 1965) from the one before. An extrapolated s is kept only where the energy falls;
-//! else the plain pass follows. Next to a jump an inexact pass does not determine the energy: an extrapolation that leads uphill is reversed
-//! there, in place of plain passes that would creep. So a step descends from the state before it, and ends in the valley that this state
-//! belongs to.
+//! Passes are extrapolated by Anderson's method (J. ACM 12, 1965) from the one before. An extrapolated s is kept only
+//! where the energy falls; else the plain pass follows. Next to a jump an inexact pass does not determine the energy:
+//! an extrapolation that leads uphill is reversed there, in place of plain passes that would creep. So a step
+//! descends from the state before it, and ends in the valley that this state belongs to.
 //!
-//! Passes take the steps of bodies that tilt freely, and of bodies that end where contact and attraction take nearly all of the grid. All others
-//! [descend in the gap](descent), bodies that end with the [near field](near_field) of K.
+//! Passes take the steps of bodies that tilt freely, and of bodies that end where contact and attraction take nearly
+//! all of the grid. All others [descend in the gap](descent), bodies that end with the [near field](near_field) of K.
 
 mod descent;
 mod energy;
@@ -46,7 +47,8 @@ use crate::solver::{Counts, Freedom, Outcome, PENETRATION_SLACK, Solution, Stop}
 
 /// Greatest number of passes of a round.
 const MAX_PASSES: usize = 2000;
-/// A step ends where a pass changes s, over the greatest traction, by less than a limit, by which the force errs: so many tolerances of the solver.
+/// A step ends where a pass changes s, over the greatest traction, by less than a limit, by which the force errs: so
+/// many tolerances of the solver.
 const CHANGE: f64 = 100.0;
 /// The limit is no more than this,
 const MOST_CHANGE: f64 = 1e-4;
@@ -55,15 +57,17 @@ const SHARE: f64 = 0.3;
 /// The tolerance of the solver in a pass, over the last change of s, and its greatest value.
 const INNER: f64 = 0.003;
 const LOOSEST: f64 = 1e-3;
-/// Where the wall displaces the surfaces by more than these ranges of the attraction, passes are solved more exactly, as far as to this part.
+/// Where the wall displaces the surfaces by more than these ranges of the attraction, passes are solved more exactly,
+/// as far as to this part.
 const EXACT: f64 = 10.0;
 const LEAST_EXACT: f64 = 1e-3;
-/// The energy of a pass is known to this many tolerances of its solver, relative to the sum of its parts: cells outside the contact may
-/// penetrate by so much.
+/// The energy of a pass is known to this many tolerances of its solver, relative to the sum of its parts: cells
+/// outside the contact may penetrate by so much.
 const UNSURE: f64 = PENETRATION_SLACK;
 /// The greatest error of s after the first pass, over what the pass changed.
 const MOST_ERROR: f64 = 100.0;
-/// Traction of a cell that changed by more than this part of the greatest in the last step is not extrapolated to the next.
+/// Traction of a cell that changed by more than this part of the greatest in the last step is not extrapolated to the
+/// next.
 const GREATEST_CHANGE: f64 = 0.5;
 
 /// A step of surfaces that attract each other.
@@ -330,7 +334,8 @@ impl AttractedStep<'_> {
         solve_with_springs(&self.scene.ground, &self.state.held, step.request(), self.given[0], trial, solve)
     }
 
-    /// Lays a body on its spring: what is left of the imbalance becomes an error of the gap, which a stiff spring would multiply.
+    /// Lays a body on its spring: what is left of the imbalance becomes an error of the gap, which a stiff spring
+    /// would multiply.
     fn hold_by_spring(&self, trial: &mut Trial) {
         let Load::Spring { stiffness, drive, .. } = self.step.loads[0] else { return };
         let force = self.state.held.region.cell_area() * net_sum(&self.state.held.region.rows(), &trial.solution);

@@ -1,10 +1,12 @@
 //! Steps on the grid without padding.
 //!
-//! K = N + F. The near field N takes the grid as periodic, without padding: an application costs a quarter of one of K, it equals K between
-//! cells that are less than half of the grid apart, and it has an inverse, wave by wave. The far field F is smooth, and zero where contact and attraction take no
-//! more than half of the grid. So bodies that end [descend](super::descent) with N, in the gap that c F (z − s) of the beginning opens, and K (z − s) is computed
-//! once when they end: a defect correction (Stetter, Numer. Math. 29, 1978). Rounds of descents follow until the new F (z − s) changes
-//! nothing any more. What is left of an error after a round is about the share of F in the potential.
+//! K = N + F. The near field N takes the grid as periodic, without padding: an application costs a quarter of one of
+//! K, it equals K between cells that are less than half of the grid apart, and it has an inverse, wave by wave. The
+//! far field F is smooth, and zero where contact and attraction take no more than half of the grid. So bodies that
+//! end [descend](super::descent) with N, in the gap that c F (z − s) of the beginning opens, and K (z − s) is
+//! computed once when they end: a defect correction (Stetter, Numer. Math. 29, 1978). Rounds of descents follow until
+//! the new F (z − s) changes nothing any more. What is left of an error after a round is about the share of F in the
+//! potential.
 
 use super::descent::Descent;
 use super::{Attracted, AttractedStep};
@@ -22,13 +24,14 @@ const MAX_EXTENT: f64 = 0.8;
 const MOST_CHANGE: f64 = 0.3;
 /// What a round may leave of the change of F (z − s) in the round before.
 const LEAST_GAIN: f64 = 0.1;
-/// A change of F (z − s) of no more than so many times what may be left is one of the error of the descents along a soft direction, if it falls no more:
-/// they go on, each time more exact by this factor.
+/// A change of F (z − s) of no more than so many times what may be left is one of the error of the descents along a
+/// soft direction, if it falls no more: they go on, each time more exact by this factor.
 const NEARLY: f64 = 10.0;
 const MORE_EXACT: f64 = 0.1;
 
 impl AttractedStep<'_> {
-    /// Finishes z, s and K (z − s) of the trial by descents in the gap. Returns whether that sufficed; else they are at least nearer.
+    /// Finishes z, s and K (z − s) of the trial by descents in the gap. Returns whether that sufficed; else they are
+    /// at least nearer.
     pub(super) fn solve_in_gap(
         &self,
         own: &mut Attracted,
@@ -46,7 +49,8 @@ impl AttractedStep<'_> {
         solved
     }
 
-    /// Convolutions with N, in quarters of one with K: along an axis that is periodic, or a single cell, nothing is padded.
+    /// Convolutions with N, in quarters of one with K: along an axis that is periodic, or a single cell, nothing is
+    /// padded.
     fn near_price(&self) -> usize {
         if self.scene.ground.kernel.periodic_axes() == [false; 2] { 1 } else { 2 }
     }

@@ -14,16 +14,19 @@ pub(crate) struct Attracted {
     fields: [Vec<f64>; 4],
     /// F (z − s) of the [far field](super::near_field).
     pub(super) far: Vec<f64>,
-    /// The least curvature of the energy over the curvature of its convex part, among the directions of the last descent.
+    /// The least curvature of the energy over the curvature of its convex part, among the directions of the last
+    /// descent.
     pub(super) softness: f64,
     /// The greatest residual of a descent, over what its softness asks for.
     pub(super) exactness: f64,
-    /// Whether a state is looked at for a direction along which the energy bends down, and the least curvature that this step has found so.
+    /// Whether a state is looked at for a direction along which the energy bends down, and the least curvature that
+    /// this step has found so.
     pub(super) looks: bool,
     pub(super) softest: Option<f64>,
     /// Whether there is a pass before.
     pub(super) has_last: bool,
-    /// The error of s after a pass, over what the pass changed, at the rate of the passes, which the last step shows before they do.
+    /// The error of s after a pass, over what the pass changed, at the rate of the passes, which the last step shows
+    /// before they do.
     pub(super) error: f64,
     pub(crate) report: PassReport,
     /// The end of a step that was [split](super::split).
@@ -49,31 +52,35 @@ pub(super) struct InPasses<'a> {
     pub(super) last_g: &'a mut Vec<f64>,
 }
 
-/// How the passes of a step of surfaces that attract each other went: contact problems, each with the attraction at the gap that the one
-/// before it led to ([`ViscoelasticContact::passes`](crate::ViscoelasticContact::passes)).
+/// How the passes of a step of surfaces that attract each other went: contact problems, each with the attraction at
+/// the gap that the one before it led to ([`ViscoelasticContact::passes`](crate::ViscoelasticContact::passes)).
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[non_exhaustive]
 pub struct PassReport {
     /// Passes, or iterations in the gap.
     pub passes: usize,
-    /// Passes that began with an extrapolated attraction under which the energy did not fall, and that were given up; trials of an iteration that raised it.
+    /// Passes that began with an extrapolated attraction under which the energy did not fall, and that were given up;
+    /// trials of an iteration that raised it.
     pub rejected: usize,
-    /// The greatest rise of the energy from pass to pass, over the sum of its parts, beyond the exactness of the passes.
+    /// The greatest rise of the energy from pass to pass, over the sum of its parts, beyond the exactness of the
+    /// passes.
     pub rise: f64,
-    /// The energy of the state before the step, under the load and the creep of its end, less the energy of the state at its end \[J\]: the loss of a jump.
-    /// Where nothing jumps, it is of second order in the length of the step, of either sign.
+    /// The energy of the state before the step, under the load and the creep of its end, less the energy of the state
+    /// at its end \[J\]: the loss of a jump. Where nothing jumps, it is of second order in the length of the step, of
+    /// either sign.
     pub released: f64,
-    /// Whether the surfaces snapped together or apart ([`Warnings::JUMP`](crate::contact::Warnings::JUMP)): `released` stays however the step is
-    /// split, where each half of a smooth step releases a quarter.
+    /// Whether the surfaces snapped together or apart ([`Warnings::JUMP`](crate::contact::Warnings::JUMP)):
+    /// `released` stays however the step is split, where each half of a smooth step releases a quarter.
     pub jumped: bool,
     /// Whether this may be so: much is [released](PassReport::may_jump).
     pub(crate) suspected: bool,
-    /// What is released beyond what the forces at both ends of the step would, by the trapezium rule, do along its way \[J\]: the loss of a jump, and
-    /// the error of the rule, of third order in the length of the step.
+    /// What is released beyond what the forces at both ends of the step would, by the trapezium rule, do along its
+    /// way \[J\]: the loss of a jump, and the error of the rule, of third order in the length of the step.
     pub(crate) unaccounted: f64,
     /// By what part of its convex part the energy bends up on the straight way between the states at both ends.
     pub(crate) bend: f64,
-    /// The force that the attraction beyond the edge of the grid would add, over that on it; 0 where [`Edge::Allow`](crate::contact::Edge::Allow) lets it be.
+    /// The force that the attraction beyond the edge of the grid would add, over that on it; 0 where
+    /// [`Edge::Allow`](crate::contact::Edge::Allow) lets it be.
     pub(crate) beyond_edge: f64,
 }
 
@@ -88,7 +95,8 @@ pub(super) struct Extrapolation {
     pub(super) error: f64,
 }
 
-/// In a jump the energy bends up on the way by less than this part of what it would without attraction, and at least this part of what is released is unaccounted for.
+/// In a jump the energy bends up on the way by less than this part of what it would without attraction, and at least
+/// this part of what is released is unaccounted for.
 const LEAST_BEND: f64 = 0.4;
 const UNACCOUNTED: f64 = 0.3;
 
@@ -172,9 +180,9 @@ impl Attracted {
         }
     }
 
-    /// Of a pass from s to g the γ that makes f = g − s less γ Δf as small as it can, Δ being the change from the last pass: the next s is g − γ Δg.
-    /// Against f the energy rises: where this s lies that way, it aims at a state of greatest energy, and the sign of γ is reversed (saddle-free
-    /// Newton method, Dauphin et al., NIPS 27, 2014).
+    /// Of a pass from s to g the γ that makes f = g − s less γ Δf as small as it can, Δ being the change from the
+    /// last pass: the next s is g − γ Δg. Against f the energy rises: where this s lies that way, it aims at a state
+    /// of greatest energy, and the sign of γ is reversed (saddle-free Newton method, Dauphin et al., NIPS 27, 2014).
     pub(super) fn extrapolation(&mut self, state: &State, s: &[f64], g: &[f64]) -> Extrapolation {
         if !self.has_last {
             return Extrapolation { weight: 0.0, reversed: false, error: 1.0 };

@@ -1,8 +1,9 @@
 //! Whether surfaces snapped within a step: a jump is what stays however the step is split.
 //!
-//! Where nothing jumps, what a step [releases](PassReport::released) is of second order in its length: each half releases a quarter of it. So of a step
-//! that is suspected of a jump the middle is computed, and both halves are looked at: the end of the second is known. A half that is suspected is
-//! halved again, as far as to a quarter of the step.
+//! Where nothing jumps, what a step [releases](PassReport::released) is of second order in its length: each half
+//! releases a quarter of it. So of a step that is suspected of a jump the middle is computed, and both halves are
+//! looked at: the end of the second is known. A half that is suspected is halved again, as far as to a quarter of the
+//! step.
 
 use super::{PassReport, add};
 use crate::contact::{Step, ViscoelasticContact};
@@ -50,7 +51,8 @@ impl ViscoelasticContact {
         }
     }
 
-    /// Whether the parts have come to another state than the step: beside a jump that was to come the step took it early.
+    /// Whether the parts have come to another state than the step: beside a jump that was to come the step took it
+    /// early.
     pub(in crate::contact) fn is_elsewhere(&self, [start, end]: [&Equilibrium; 2]) -> bool {
         let [end, start, now] = [end, start, &self.computation.state.held.current].map(|at| &at.solution.potential);
         // on other cells they are not compared
@@ -74,7 +76,8 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Whether surfaces jump between two shares of the step, from the state of the contact to `end`. Where they do not, the contact comes to the end.
+    /// Whether surfaces jump between two shares of the step, from the state of the contact to `end`. Where they do
+    /// not, the contact comes to the end.
     fn jumps(&mut self, from: f64, to: f64, end: &Solution) -> Result<bool> {
         let middle = 0.5 * (from + to);
         Ok(self.jumps_in_part(from, middle, None)? || self.jumps_in_part(middle, to, Some(end))?)

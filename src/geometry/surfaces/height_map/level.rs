@@ -41,7 +41,8 @@ impl HeightMap {
     pub fn leveled(mut self, form: Form) -> Result<HeightMap> {
         self.require_known()?;
         let terms = form.terms();
-        // The second fit removes the rounding errors of the first, which count where the form is far larger than the roughness.
+        // The second fit removes the rounding errors of the first, which count where the form is far larger than the
+        // roughness.
         for _ in 0..2 {
             let (mut matrix, mut right) = ([[0.0; MOST]; MOST], [0.0; MOST]);
             for (k, &height) in self.heights.iter().enumerate().filter(|(_, height)| !height.is_nan()) {

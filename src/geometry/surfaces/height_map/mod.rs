@@ -189,8 +189,9 @@ impl HeightMap {
         if self.missing < self.heights.len() { Ok(()) } else { Err(Error::Map(MapError::NothingKnown)) }
     }
 
-    /// Position of the first cell of `grid` in the map shifted by `by`: index of the nearest point, and the fraction of a cell
-    /// from there. The fraction is counted from the origin: it is the same to the last bit for all rows of a grid.
+    /// Position of the first cell of `grid` in the map shifted by `by`: index of the nearest point, and the fraction
+    /// of a cell from there. The fraction is counted from the origin: it is the same to the last bit for all rows of
+    /// a grid.
     fn offset(&self, grid: &Grid, by: [f64; 2], axis: usize) -> (f64, f64) {
         let (cells, half) = grid.offset_of_first(axis);
         let position = self.index(axis, half * grid.spacing()[axis] - by[axis]);
@@ -253,7 +254,8 @@ impl Geometry for HeightMap {
         }
     }
 
-    /// Waves of four of its points and more, whatever shorter ones it may hold: on a grid of its own spacing nothing is missed.
+    /// Waves of four of its points and more, whatever shorter ones it may hold: on a grid of its own spacing nothing
+    /// is missed.
     fn waves(&self) -> Vec<Waves> {
         let period = if self.periodic { self.lengths() } else { [f64::INFINITY; 2] };
         vec![Waves { period, shortest: self.spacing.map(|spacing| 4.0 * spacing) }]

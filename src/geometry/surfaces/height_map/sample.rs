@@ -89,8 +89,9 @@ impl HeightMap {
 
     /// Height at the point (x1, x2) \[m\]; `None` outside the map and where it is missing.
     ///
-    /// Interpolated bicubically, exact at the points of the map. Next to masked points the height is interpolated linearly
-    /// between the known points; it is missing if the nearest point is missing. Next to undecided points it is missing.
+    /// Interpolated bicubically, exact at the points of the map. Next to masked points the height is interpolated
+    /// linearly between the known points; it is missing if the nearest point is missing. Next to undecided points it
+    /// is missing.
     pub fn height_at(&self, x1: f64, x2: f64) -> Option<f64> {
         let at = self.indices(x1, x2)?;
         let height = self.weighted(&self.stencils(at), [0, 0]);
@@ -110,8 +111,8 @@ impl HeightMap {
         [0, 1].map(|axis| Stencil::new(at[axis], self.cells[axis], self.periodic))
     }
 
-    /// Sum of sixteen heights with their weights, or for `derivatives` of 1 along an axis the derivatives of these; NaN if a
-    /// height with a nonzero weight is missing.
+    /// Sum of sixteen heights with their weights, or for `derivatives` of 1 along an axis the derivatives of these;
+    /// NaN if a height with a nonzero weight is missing.
     fn weighted(&self, [rows, columns]: &[Stencil; 2], derivatives: [usize; 2]) -> f64 {
         let (of_rows, of_columns) = (&rows.weights[derivatives[0]], &columns.weights[derivatives[1]]);
         let mut sum = 0.0;

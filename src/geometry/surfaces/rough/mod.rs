@@ -118,8 +118,8 @@ fn heights(grid: &Grid, spec: &RoughSpec, rows: &Rows, bytes: u128) -> Result<Ve
     Ok(heights)
 }
 
-/// Random waves of the k2 in `columns` before they are scaled to the specified roughness, and the mean squares of height and
-/// slope of the waves of each k2.
+/// Random waves of the k2 in `columns` before they are scaled to the specified roughness, and the mean squares of
+/// height and slope of the waves of each k2.
 fn waves(grid: &Grid, spec: &RoughSpec, columns: Range<usize>) -> (HeightSpectrum, Vec<[f64; 2]>) {
     let (cells, lengths) = (grid.cells(), grid.lengths());
     let line = cells[0] == 1 || cells[1] == 1;

@@ -15,8 +15,8 @@ const ROUNDING: f64 = 1e-6;
 /// A [`Rough`] surface distributed over [ranks](crate::parallel): each rank holds its local rows only. Made by
 /// [`Rough::shared`].
 ///
-/// As a [`Geometry`] it is defined at the cell centres of the local rows. Elsewhere it is NaN, which a contact refuses: to
-/// shift or turn a surface, use [`Rough`].
+/// As a [`Geometry`] it is defined at the cell centres of the local rows. Elsewhere it is NaN, which a contact
+/// refuses: to shift or turn a surface, use [`Rough`].
 #[derive(Clone, PartialEq)]
 pub struct SharedRough {
     spec: RoughSpec,
@@ -33,8 +33,8 @@ debug_by! {
 }
 
 impl Rough {
-    /// The local rows of the surface of [`Rough::new`], with the same bits. Takes 40 bytes per local cell while the surface is
-    /// made, and 8 afterwards. A call of all ranks.
+    /// The local rows of the surface of [`Rough::new`], with the same bits. Takes 40 bytes per local cell while the
+    /// surface is made, and 8 afterwards. A call of all ranks.
     ///
     /// ```
     /// use viscocontact::prelude::*;

@@ -41,7 +41,8 @@ pub struct RoughSpec {
     anisotropy: Anisotropy, with_anisotropy;
     /// Roughness.
     roughness: Roughness, with_roughness;
-    /// Seed of the random numbers (default: 0): the same seed and lengths give the same surface on every mesh that resolves it.
+    /// Seed of the random numbers (default: 0): the same seed and lengths give the same surface on every mesh that
+    /// resolves it.
     seed: u64, with_seed;
 }
 }
@@ -91,7 +92,8 @@ impl Default for RoughSpec {
 }
 
 impl RoughSpec {
-    /// Isotropic, of Hurst exponent 0.8 from the `longest` to the `shortest` wavelength \[m\], without plateau. Checked by
+    /// Isotropic, of Hurst exponent 0.8 from the `longest` to the `shortest` wavelength \[m\], without plateau.
+    /// Checked by
     /// [`Rough::new`](crate::geometry::Rough::new).
     pub const fn new(longest: f64, shortest: f64, roughness: Roughness) -> RoughSpec {
         let anisotropy = Anisotropy::new(1.0, 0.0);

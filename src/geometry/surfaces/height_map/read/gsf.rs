@@ -15,8 +15,9 @@ impl HeightMap {
     /// Reads a Gwyddion Simple Field 1.0, the [format](http://gwyddion.net/documentation/user-guide-en/gsf.html) in
     /// which Gwyddion exchanges single maps: heights in single precision, NaN where nothing was measured.
     ///
-    /// The file must state lengths, which the format makes optional. Lengths or heights without a unit are in `fallback`; without one, the file must state its units
-    /// ([`LengthUnit`]), too. The first row is the top. `XOffset` and `YOffset` are ignored.
+    /// The file must state lengths, which the format makes optional. Lengths or heights without a unit are in
+    /// `fallback`; without one, the file must state its units ([`LengthUnit`]), too. The first row is the top.
+    /// `XOffset` and `YOffset` are ignored.
     ///
     /// ```
     /// use viscocontact::geometry::{HeightMap, LengthUnit};

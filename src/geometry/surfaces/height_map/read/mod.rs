@@ -50,9 +50,9 @@ impl HeightMap {
     /// # Orientation
     ///
     /// x1 is the x of the file, along its rows, and x2 its y, which points up. The cell `[i, j]` of the map has the
-    /// height of point i along x1 and j along x2. Image formats (GSF, SUR, text matrices) begin with the top row, at the
-    /// largest x2; SDF and X3P begin with the bottom row. The origin stated in a file is ignored: the map is centred on
-    /// its rectangle.
+    /// height of point i along x1 and j along x2. Image formats (GSF, SUR, text matrices) begin with the top row, at
+    /// the largest x2; SDF and X3P begin with the bottom row. The origin stated in a file is ignored: the map is
+    /// centred on its rectangle.
     ///
     /// # Errors
     /// [`Error::Map`](crate::Error::Map) if the extension is unknown, or the file cannot be read or is malformed; as

@@ -32,11 +32,13 @@ const SPACINGS: [(&str, usize); 3] = [("x spacing", 120), ("y spacing", 124), ("
 const UNITS: [(&str, usize); 3] = [("x unit", 180), ("y unit", 196), ("z unit", 212)];
 
 impl HeightMap {
-    /// Reads a surface or profile of Digital Surf (SUR, PRO): heights as whole numbers of 16 or 32 bits, not compressed.
+    /// Reads a surface or profile of Digital Surf (SUR, PRO): heights as whole numbers of 16 or 32 bits, not
+    /// compressed.
     ///
-    /// The first line is the top. Where the file has special points, heights beyond the stated range were not measured, or
-    /// saturated the instrument: they are missing. Heights count from an arbitrary level, since readers disagree on the meaning
-    /// of the offset in the file. Compressed files, series, images and inverted surfaces are refused.
+    /// The first line is the top. Where the file has special points, heights beyond the stated range were not
+    /// measured, or saturated the instrument: they are missing. Heights count from an arbitrary level, since readers
+    /// disagree on the meaning of the offset in the file. Compressed files, series, images and inverted surfaces are
+    /// refused.
     ///
     /// # Errors
     /// [`Error::Map`](crate::Error::Map) if the file cannot be read, is malformed or of another kind; as

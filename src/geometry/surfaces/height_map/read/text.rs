@@ -21,10 +21,10 @@ impl HeightMap {
     /// Reads a matrix of heights in `unit` from text, on a rectangle of `lengths` \[m\]. A line is a row along x1; the
     /// first line is the top.
     ///
-    /// `format` states how the text is written, and which height stands for missing points. A field that is empty, `nan`,
-    /// `bad`, `---`, `no data` or `n/a` is a missing point. Lines of words at the beginning are a header, as of Wyko, ESRI,
-    /// Bruker, Zygo or Keyence: its lengths and units are not read, but its `NODATA_value` is. An index 0, 1, 2… above and
-    /// beside the heights, as of a data frame, is left out.
+    /// `format` states how the text is written, and which height stands for missing points. A field that is empty,
+    /// `nan`, `bad`, `---`, `no data` or `n/a` is a missing point. Lines of words at the beginning are a header, as
+    /// of Wyko, ESRI, Bruker, Zygo or Keyence: its lengths and units are not read, but its `NODATA_value` is. An
+    /// index 0, 1, 2… above and beside the heights, as of a data frame, is left out.
     ///
     /// ```
     /// use viscocontact::TextFormat;
@@ -38,10 +38,10 @@ impl HeightMap {
     /// ```
     ///
     /// # Errors
-    /// If the text cannot be read, a line differs from the first in its number of columns, or a field is not a number, each
-    /// with the number of the line ([`TextError`]); if the text is a profile or has coordinates
-    /// ([`MapError::NotAMatrix`]), or some heights look like missing ones ([`MapError::StandIn`]); as [`HeightMap::new`] if
-    /// the map is invalid.
+    /// If the text cannot be read, a line differs from the first in its number of columns, or a field is not a
+    /// number, each with the number of the line ([`TextError`]); if the text is a profile or has coordinates
+    /// ([`MapError::NotAMatrix`]), or some heights look like missing ones ([`MapError::StandIn`]); as
+    /// [`HeightMap::new`] if the map is invalid.
     pub fn from_text(reader: impl Read, lengths: [f64; 2], unit: LengthUnit, format: TextFormat) -> Result<HeightMap> {
         let text = Text::read(reader, "text file", format)?;
         let mut missing = format.missing_height();

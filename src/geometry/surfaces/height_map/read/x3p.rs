@@ -62,8 +62,8 @@ fn unreadable(reason: &str) -> Error {
     Error::File(FileError::Unreadable { file: format!("{FORMAT} file"), reason: reason.to_owned(), kind: None })
 }
 
-/// The contents of a file of the archive, of at most `most` bytes. All of them may be in a folder, and names may be written as
-/// in Windows.
+/// The contents of a file of the archive, of at most `most` bytes. All of them may be in a folder, and names may be
+/// written as in Windows.
 fn member(archive: &mut Archive, name: &str, what: &'static str, most: u64) -> Result<Vec<u8>> {
     let plain = |name: &str| name.replace('\\', "/").trim_start_matches("./").to_owned();
     let mut names: Vec<String> = archive.file_names().flatten().map(|name| name.to_string()).collect();
@@ -225,7 +225,8 @@ mod tests {
     fn heights_in_the_xml_are_read() {
         for list in [
             "<Datum>1</Datum><Datum>2</Datum><Datum>3</Datum><Datum>4</Datum><Datum/><Datum>-6</Datum>",
-            "<Datum>;;1</Datum><Datum>1;0;2</Datum><Datum>3</Datum> <Datum>4</Datum><Datum>1;1;</Datum><Datum> -6 </Datum>",
+            "<Datum>;;1</Datum><Datum>1;0;2</Datum><Datum>3</Datum> <Datum>4</Datum><Datum>1;1;</Datum><Datum> -6 \
+            </Datum>",
         ] {
             expected(&read(&xml(DOUBLE, &format!("<DataList>{list}</DataList>")), &[]).unwrap());
         }

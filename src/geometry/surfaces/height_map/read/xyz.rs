@@ -23,8 +23,8 @@ impl HeightMap {
     ///
     /// The points may be in any order, but must lie on a regular grid along x and y to within 1/1000 of its spacing,
     /// which is determined from them. Points of the grid that are absent, or whose height is `nan` or `bad`, are
-    /// missing. `format` states how the text is written, and which height stands for missing points. Headings (x, y, z, with
-    /// the units given) are looked for as in a [`TextTable`].
+    /// missing. `format` states how the text is written, and which height stands for missing points. Headings (x, y,
+    /// z, with the units given) are looked for as in a [`TextTable`].
     ///
     /// ```
     /// use viscocontact::TextFormat;
@@ -38,8 +38,8 @@ impl HeightMap {
     /// ```
     ///
     /// # Errors
-    /// If the text cannot be read or a line does not have three numbers ([`TextError`](crate::TextError)); if a point lies
-    /// off the grid or is given twice, or less than 1 % of the points of the grid are given
+    /// If the text cannot be read or a line does not have three numbers ([`TextError`](crate::TextError)); if a point
+    /// lies off the grid or is given twice, or less than 1 % of the points of the grid are given
     /// ([`Error::Map`](crate::Error::Map)); if there are fewer than two different coordinates along x or y; as
     /// [`HeightMap::new`] if the map is invalid.
     pub fn from_xyz(
@@ -68,8 +68,8 @@ impl HeightMap {
 
     /// Reads a profile, lines of x and height, for a line contact: a map of a single row along x1.
     ///
-    /// As [`HeightMap::from_xyz`]: the points must lie at regular distances, and may have headings. An array of heights at
-    /// regular distances is a profile by [`HeightMap::new`] with `[n, 1]` cells.
+    /// As [`HeightMap::from_xyz`]: the points must lie at regular distances, and may have headings. An array of
+    /// heights at regular distances is a profile by [`HeightMap::new`] with `[n, 1]` cells.
     ///
     /// ```
     /// use viscocontact::TextFormat;
