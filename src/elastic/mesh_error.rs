@@ -6,7 +6,8 @@ use crate::error::{Error, Result, StepError, coverage};
 use crate::fields::Fields;
 use crate::load::Load;
 use crate::observe::MeshError;
-use crate::observe::grid_convergence::{OfMesh, SINGULAR, SMOOTH};
+use crate::observe::area::Pressed;
+use crate::observe::grid_convergence::{OfMesh, SINGULAR, SMOOTH, off_means};
 use crate::{Grid, sum};
 
 impl Fields<'_> {
@@ -57,7 +58,7 @@ const FEWEST: [usize; 2] = [3, 8];
 
 /// A state on a mesh.
 struct Coarse {
-    cells: [usize; 2],
+    grid: Grid,
     pressure: Vec<f64>,
     values: Vec<f64>,
 }
@@ -129,9 +130,9 @@ impl State<'_> {
         };
         let gaps: Vec<_> = (0..fields.bodies()).map(of_body).collect();
         let settings = fields.settings().with_edge(Edge::Allow);
-        let elastic = ElasticBuilder::with_gaps(grid, gaps, Vec::new()).kernel(kernel).settings(settings);
+        let elastic = ElasticBuilder::with_gaps(grid.clone(), gaps, Vec::new()).kernel(kernel).settings(settings);
         let mut contact: ElasticContact = elastic.modulus(1.0 / self.compliance).build()?;
-        contact.set_surface(&(0..cells[0] * cells[1]).map(|k| self.surface[fine(k)]).collect::<Vec<_>>())?;
+        contact.set_surface(&(0..grid.len()).map(|k| self.surface[fine(k)]).collect::<Vec<_>>())?;
         let loads = (0..fields.bodies()).map(|body| match (fields.is_by_approach(body), fields.body(body)) {
             (true, _) => Load::approach(fields.motion(body).approach - initial.datum),
             (false, own) => Load::force(own.map_or(0.0, |own| own.force)),
@@ -146,7 +147,7 @@ impl State<'_> {
         if cells_of.any(|cells| cells < fewest) {
             return Ok(None);
         }
-        Ok(Some(Coarse { cells, pressure: own.pressure().to_vec(), values: values(own, fields, 0.0) }))
+        Ok(Some(Coarse { grid, pressure: own.pressure().to_vec(), values: values(own, fields, 0.0) }))
     }
 }
 
@@ -172,10 +173,10 @@ fn mesh_error(fields: Fields<'_>) -> Result<Option<MeshError>> {
     let sides = [4.0, 2.0, 1.0];
     let measured = |differences: [Option<f64>; 2], most: f64| {
         let differences: Vec<f64> = differences.into_iter().flatten().collect();
-        let of_all = OfMesh::of(&sides[2 - differences.len()..], &differences, most);
+        let of_all = OfMesh::of(&sides, &differences, most);
         // without an order the last two meshes count alone
         let [.., last] = differences[..] else { return of_all };
-        if of_all.order.is_some() { of_all } else { OfMesh::of(&sides[1..], &[last], most) }
+        if of_all.order.is_some() { of_all } else { OfMesh::of(&sides, &[last], most) }
     };
     let of_value = |which: usize, most: f64| {
         let off = |a: f64, b: f64| ((a - b) / scales[which]).abs();
@@ -184,9 +185,9 @@ fn mesh_error(fields: Fields<'_>) -> Result<Option<MeshError>> {
     };
     let peak = of_value(0, SMOOTH);
     let most = if peak.order.is_some() { SMOOTH } else { SINGULAR };
-    let cells = fields.grid().cells();
-    let first = quarter.as_ref().map(|quarter| difference(quarter, &half.pressure, half.cells));
-    let field = measured([first, Some(difference(&half, fields.pressure(), cells))], most);
+    let periodic = fields.kernel().periodic_axes();
+    let first = quarter.as_ref().map(|quarter| difference(quarter, &half.pressure, &half.grid, periodic));
+    let field = measured([first, Some(difference(&half, fields.pressure(), fields.grid(), periodic))], most);
     Ok(Some(MeshError {
         approach: (2..own.len()).map(|which| of_value(which, most).error).fold(0.0, f64::max),
         max_pressure: peak.order.map(|_| peak.error),
@@ -196,24 +197,18 @@ fn mesh_error(fields: Fields<'_>) -> Result<Option<MeshError>> {
 }
 
 /// Σ |p − p′| / Σ p′ over the cells of the coarser mesh, each about every other fine one: p′ are means over it.
-fn difference(coarse: &Coarse, fine: &[f64], [n1, n2]: [usize; 2]) -> f64 {
-    let at = |i: isize, j: isize| {
-        let inside = i >= 0 && j >= 0 && (i as usize) < n1 && (j as usize) < n2;
-        if inside { fine[i as usize * n2 + j as usize] } else { 0.0 }
+fn difference(coarse: &Coarse, fine: &[f64], grid: &Grid, periodic: [bool; 2]) -> f64 {
+    let [n1, n2] = grid.cells();
+    let fine = Pressed { grid, first: None, periodic, pressure: fine, gap: &[], extent: None };
+    // beside every other cell, of which a coarse one holds half; along a line there are no others
+    let beside = |n: usize, k: usize| {
+        let k = k as isize;
+        if n == 1 { [(k, 0.0), (k, 1.0), (k, 0.0)] } else { [(2 * k - 1, 0.25), (2 * k, 0.5), (2 * k + 1, 0.25)] }
     };
-    let weights = |n: usize| if n == 1 { [0.0, 1.0, 0.0] } else { [0.25, 0.5, 0.25] };
-    let (along, across) = (weights(n1), weights(n2));
-    let (mut off, mut sum) = (0.0, 0.0);
-    for (k, p) in coarse.pressure.iter().enumerate() {
-        let [i, j] = [(k / coarse.cells[1], n1), (k % coarse.cells[1], n2)]
-            .map(|(k, n)| (if n == 1 { k } else { 2 * k }) as isize);
-        let mut mean = 0.0;
-        for (a, w1) in along.iter().enumerate() {
-            for (b, w2) in across.iter().enumerate() {
-                mean += w1 * w2 * at(i + a as isize - 1, j + b as isize - 1);
-            }
-        }
-        (off, sum) = (off + (p - mean).abs(), sum + mean);
-    }
-    if sum > 0.0 { off / sum } else { off }
+    let mean = |k: usize| {
+        let (rows, columns) = (beside(n1, k / coarse.grid.cells()[1]), beside(n2, k % coarse.grid.cells()[1]));
+        let all = rows.iter().flat_map(|row| columns.iter().map(move |column| (row, column)));
+        all.map(|((i, w1), (j, w2))| w1 * w2 * fine.pressure_at([*i, *j])).sum::<f64>()
+    };
+    off_means(&coarse.pressure, (0..coarse.pressure.len()).map(mean))
 }

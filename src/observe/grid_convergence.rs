@@ -83,8 +83,13 @@ pub(crate) fn difference_of_fields((coarse, n): (&[f64], [usize; 2]), (fine, m):
         let row = &along[from * n[1]..][..n[1]];
         means[i * n[1]..][..n[1]].iter_mut().zip(row).for_each(|(mean, value)| *mean += part * value);
     }
-    let (off, sum) =
-        coarse.iter().zip(&means).fold((0.0, 0.0), |(off, sum), (p, mean)| (off + (p - mean).abs(), sum + mean.abs()));
+    off_means(coarse, means.into_iter())
+}
+
+/// Σ |p − p′| / Σ |p′| of a field against means over its cells.
+pub(crate) fn off_means(coarse: &[f64], means: impl Iterator<Item = f64>) -> f64 {
+    let add = |(off, sum): (f64, f64), (p, mean): (&f64, f64)| (off + (p - mean).abs(), sum + mean.abs());
+    let (off, sum) = coarse.iter().zip(means).fold((0.0, 0.0), add);
     if sum > 0.0 { off / sum } else { off }
 }
 
