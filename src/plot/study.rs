@@ -1,7 +1,7 @@
 //! The picture of a convergence study.
 
 use crate::plot::{COLORS, Chart, Legend, Quantity, Scale, Style};
-use crate::study::StudyResult;
+use crate::study::{Mesh, StudyResult};
 
 impl StudyResult {
     /// A chart of the change of each quantity from mesh to mesh over the cells along the longer side; quantities that
@@ -28,9 +28,9 @@ impl StudyResult {
         chart.scale = Scale::LogLog;
         let mut colors = COLORS.iter().cycle();
         for (k, own) in self.quantities.iter().enumerate() {
-            let point = |mesh: &crate::study::Mesh| Some((mesh.cells[0].max(mesh.cells[1]) as f64, mesh.changes[k]?));
+            let point = |mesh: &Mesh| Some((mesh.cells[0].max(mesh.cells[1]) as f64, mesh.changes[k]?));
             let points: Vec<(f64, f64)> = self.meshes.iter().filter_map(point).collect();
-            if points.iter().any(|point| point.1 > NOISE) {
+            if points.iter().any(|point| point.1 > 0.0) {
                 let Some(color) = colors.next() else { continue };
                 chart.add(own.name.clone(), *color, Style::LineAndDots, points);
             }
@@ -38,6 +38,3 @@ impl StudyResult {
         chart
     }
 }
-
-/// A smaller change is rounding, as of a force that is given.
-const NOISE: f64 = 1e-13;

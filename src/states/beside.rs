@@ -16,7 +16,7 @@ use crate::solver::RigidMotion;
 use crate::states::contact::StatesContact;
 use crate::states::curve::ElasticStates;
 use crate::states::pressed::Pressed;
-use crate::states::reach::{Loading, MARGIN, greatest};
+use crate::states::reach::{Loading, MARGIN, greatest, sampled};
 use crate::states::repeated::{Found, NEAREST, Repeated, undisturbed};
 use crate::states::twin::Profile;
 
@@ -93,7 +93,7 @@ impl Beside {
         accuracy: f64,
         (interpolant, start): (Interpolant, f64),
     ) -> Result<Option<Beside>> {
-        let all = course.sampled(start, PARTS)?;
+        let all = sampled(course.history, [start, course.until], PARTS)?;
         let tilt = all[0].tilt();
         let (by_force, is_free) =
             (all.iter().all(Load::is_force), tilt.iter().any(|tilt| matches!(tilt, Tilt::Free { .. })));

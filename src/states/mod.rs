@@ -67,7 +67,7 @@ pub use curve::{ElasticState, ElasticStates};
 #[cfg(feature = "npy")]
 pub(crate) use pressed::Pressed;
 pub use reach::Reach;
-pub(crate) use reach::{as_elastic, greatest};
+pub(crate) use reach::{as_elastic, greatest, sampled, softest_compliance};
 pub use run::StatesRun;
 pub use sweep::Sweep;
 

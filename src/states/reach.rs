@@ -92,7 +92,7 @@ pub(crate) struct Loading<'a> {
 impl Loading<'_> {
     fn reach(&self) -> Result<Reach> {
         positive("end of the run", self.until)?;
-        let all = self.sampled(0.0, PARTS)?;
+        let all = sampled(self.history, [0.0, self.until], PARTS)?;
         if all.iter().all(Load::is_force) {
             return Ok(Reach::Level(
                 MARGIN * self.greatest_level(all[0].tilt(), Interpolant::CorrectedLinear, LEVELS)?,
@@ -101,25 +101,8 @@ impl Loading<'_> {
         Ok(Reach::Loads(greatest(&all, self.softest_compliance()?).collect()))
     }
 
-    /// Loads at the ends of so many even parts of the run from `start` on, and at the corners and jumps of its history.
-    pub(crate) fn sampled(&self, start: f64, parts: u32) -> Result<Vec<Load>> {
-        let Loading { history, until, .. } = *self;
-        let mut all = Vec::new();
-        for k in 0..=parts {
-            let time = start + (until - start) * f64::from(k) / f64::from(parts);
-            all.push(history.checked_at(time, false)?);
-        }
-        for corner in history.breakpoints(start).take_while(|&next| next <= until) {
-            all.extend([history.checked_before(corner, false)?, history.checked_at(corner, false)?]);
-        }
-        Ok(all)
-    }
-
-    /// The compliance at the end of the run, at its start where it is infinite then.
-    pub(crate) fn softest_compliance(&self) -> Result<f64> {
-        let creeping = self.temperature.map_or(Ok(self.until), |history| history.reduced_time(0.0, self.until))?;
-        let softest = self.material.contact_compliance(creeping.min(self.material.known_until()));
-        Ok(if softest.is_finite() { softest } else { self.material.contact_compliance(0.0) })
+    pub(super) fn softest_compliance(&self) -> Result<f64> {
+        softest_compliance(&[self.material], self.temperature, self.until)
     }
 
     /// An undisturbed contact on these states.
@@ -147,6 +130,31 @@ impl Loading<'_> {
         }
         Ok(greatest)
     }
+}
+
+/// Loads at the ends of so many even parts of the time from a start to an end, and at the corners and jumps within.
+pub(crate) fn sampled(history: &dyn LoadHistory, [start, until]: [f64; 2], parts: u32) -> Result<Vec<Load>> {
+    let mut all = Vec::new();
+    for k in 0..=parts {
+        let time = start + (until - start) * f64::from(k) / f64::from(parts);
+        all.push(history.checked_at(time, false)?);
+    }
+    for corner in history.breakpoints(start).take_while(|&next| next <= until) {
+        all.extend([history.checked_before(corner, false)?, history.checked_at(corner, false)?]);
+    }
+    Ok(all)
+}
+
+/// The compliance of bodies together at the end of a run, as far as they are known; at its start where it is infinite
+/// then.
+pub(crate) fn softest_compliance(
+    bodies: &[&Material],
+    temperature: Option<&TemperatureHistory>,
+    until: f64,
+) -> Result<f64> {
+    let creeping = temperature.map_or(Ok(until), |history| history.reduced_time(0.0, until))?;
+    let at = |time: f64| bodies.iter().map(|body| body.contact_compliance(time.min(body.known_until()))).sum::<f64>();
+    Ok(Some(at(creeping)).filter(|softest| softest.is_finite()).unwrap_or_else(|| at(0.0)))
 }
 
 /// The greatest force, approach and drive of a spring among some loads, as loads of an elastic body of unit compliance.

@@ -7,7 +7,7 @@ use crate::error::{Error, Result, StepError};
 use crate::extent::Extent;
 use crate::fields::Fields;
 use crate::load::Load;
-use crate::states::{as_elastic, greatest};
+use crate::states::{as_elastic, greatest, sampled};
 use crate::study::scene::Scene;
 
 /// Number of even parts of the run at whose ends the loads are looked at, and every so many of these that give a
@@ -34,6 +34,16 @@ pub(super) enum Side {
     Given(f64),
     /// One cell \[m\], along which nothing changes.
     Uniform(f64),
+}
+
+impl Side {
+    /// Its length, if it is not to be found.
+    fn given(self) -> Option<f64> {
+        match self {
+            Side::Found => None,
+            Side::Given(length) | Side::Uniform(length) => Some(length),
+        }
+    }
 }
 
 /// The domain and the contact in it.
@@ -85,10 +95,7 @@ impl Domain {
     }
 
     fn lengths(&self) -> [f64; 2] {
-        [0, 1].map(|axis| match self.sides[axis] {
-            Side::Found => 2.0 * DOMAIN_TO_CONTACT * self.reach[axis],
-            Side::Given(length) | Side::Uniform(length) => length,
-        })
+        [0, 1].map(|axis| self.sides[axis].given().unwrap_or(2.0 * DOMAIN_TO_CONTACT * self.reach[axis]))
     }
 
     /// The grid with so many cells across the widest contact, or the longer side where both are given.
@@ -111,14 +118,11 @@ impl Domain {
     /// Finds the elastic contacts under the greatest loads on domains of several sizes until they fill one well.
     pub(super) fn find(scene: &Scene<'_>, sides: [Side; 2]) -> Result<Domain> {
         let is_found = sides.map(|side| side == Side::Found);
-        let first = first_length(scene, sides)?;
-        let mut lengths = sides.map(|side| match side {
-            Side::Found => first,
-            Side::Given(length) | Side::Uniform(length) => length,
-        });
+        let (first, loads) = first_length(scene, sides)?;
+        let mut lengths = sides.map(|side| side.given().unwrap_or(first));
         for _ in 0..MOST_DOMAINS {
             let builder = scene.builder(grid_of(sides, lengths)?)?;
-            let factors = match greatest_contacts(scene, &builder, sides) {
+            let factors = match greatest_contacts(&builder, &loads, sides) {
                 Err(Error::Step(StepError::ContactAtEdge { .. } | StepError::LoadOutsideHull { .. })) => [1.7; 2],
                 Err(Error::NothingToTouch { .. }) => [0.3; 2],
                 Err(error) => return Err(error),
@@ -139,7 +143,7 @@ impl Domain {
 
 /// A grid of few cells, on which the parts of a scene are seen.
 pub(super) fn probe(sides: [Side; 2]) -> Result<Grid> {
-    grid_of(sides, sides.map(|side| if let Side::Given(length) | Side::Uniform(length) = side { length } else { 1.0 }))
+    grid_of(sides, sides.map(|side| side.given().unwrap_or(1.0)))
 }
 
 fn grid_of(sides: [Side; 2], lengths: [f64; 2]) -> Result<Grid> {
@@ -150,7 +154,7 @@ fn grid_of(sides: [Side; 2], lengths: [f64; 2]) -> Result<Grid> {
 /// large as ever.
 fn greatest_loads(scene: &Scene<'_>, compliance: f64) -> Result<Vec<Vec<Load>>> {
     let all: Vec<Vec<Load>> =
-        scene.histories.iter().map(|history| sampled(*history, scene.until)).collect::<Result<_>>()?;
+        scene.histories.iter().map(|history| sampled(*history, [0.0, scene.until], PARTS)).collect::<Result<_>>()?;
     let mut loads: Vec<Vec<Load>> = all.iter().map(|all| greatest(all, compliance).collect()).collect();
     // where the tilt or the load point changes, the contact is somewhere else
     for (all, loads) in
@@ -162,17 +166,10 @@ fn greatest_loads(scene: &Scene<'_>, compliance: f64) -> Result<Vec<Vec<Load>>> 
     Ok((0..most).map(|k| loads.iter().map(|own| own[k.min(own.len() - 1)]).collect()).collect())
 }
 
-fn sampled(history: &dyn crate::load::LoadHistory, until: f64) -> Result<Vec<Load>> {
-    let even = (0..=PARTS).map(|k| history.checked_at(until * f64::from(k) / f64::from(PARTS), true));
-    let corners = history.breakpoints(0.0).take_while(|&next| next <= until);
-    let beside = corners.flat_map(|next| [history.checked_before(next, true), history.checked_at(next, true)]);
-    even.chain(beside).collect()
-}
-
-fn greatest_contacts(scene: &Scene<'_>, builder: &Builder, sides: [Side; 2]) -> Result<Domain> {
+fn greatest_contacts(builder: &Builder, loads: &[Vec<Load>], sides: [Side; 2]) -> Result<Domain> {
     let (mut contact, mut domain): (ElasticContact, _) =
         (ElasticBuilder::of(builder).modulus(1.0).build()?, Domain::empty(sides));
-    for loads in greatest_loads(scene, builder.compliance_until(scene.until)?)? {
+    for loads in loads {
         contact.solve(loads)?;
         domain.include(contact.fields());
     }
@@ -180,27 +177,30 @@ fn greatest_contacts(scene: &Scene<'_>, builder: &Builder, sides: [Side; 2]) -> 
 }
 
 /// Initial length L of the domain: a contact of half width L/4 is indented by the gap at its edge, at a level of about
-/// L times this gap.
-fn first_length(scene: &Scene<'_>, sides: [Side; 2]) -> Result<f64> {
+/// L times this gap. With the greatest loads.
+fn first_length(scene: &Scene<'_>, sides: [Side; 2]) -> Result<(f64, Vec<Vec<Load>>)> {
     let line = sides.iter().find_map(|side| if let Side::Uniform(length) = side { Some(*length) } else { None });
-    let mut failed = None;
+    let (mut failed, mut known) = (None, None);
     for length in (-24..=18).map(|k| 10f64.powf(0.5 * f64::from(k))) {
-        let lengths = sides.map(|side| match side {
-            Side::Found => length,
-            Side::Given(length) | Side::Uniform(length) => length,
-        });
+        let lengths = sides.map(|side| side.given().unwrap_or(length));
         // a kernel may not allow cells of all sizes
         let built = grid_of(sides, lengths).and_then(|grid| scene.builder(grid));
         match built.and_then(|builder| Ok((rise(&builder, sides)?, builder.compliance_until(scene.until)?))) {
             Err(error) => failed = Some(error),
             Ok((rise, compliance)) => {
-                let depth = greatest_loads(scene, compliance)?.into_iter().flatten().map(|load| match load {
-                    Load::Force { normal, .. } => normal / line.unwrap_or(1.0) / line.map_or(length, |_| 1.0),
+                // the bodies, and so the loads, are the same on all grids
+                let loads = match known.take() {
+                    Some(loads) => loads,
+                    None => greatest_loads(scene, compliance)?,
+                };
+                let depth = loads.iter().flatten().map(|load| match *load {
+                    Load::Force { normal, .. } => normal / line.unwrap_or(length),
                     Load::Approach { approach, .. } | Load::Spring { drive: approach, .. } => approach,
                 });
                 if rise >= depth.fold(0.0, f64::max) || rise.is_nan() {
-                    return Ok(length);
+                    return Ok((length, loads));
                 }
+                known = Some(loads);
             }
         }
     }

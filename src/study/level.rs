@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 use crate::fields::KeptFields;
 use crate::observe::grid_convergence::{difference, difference_of_fields};
 use crate::run::Stepping;
-use crate::study::domain::Domain;
+use crate::study::domain::{Domain, Side};
 use crate::study::observable::{Observed, Reading};
 use crate::study::scene::Scene;
 use crate::study::{Cost, StudyProgress};
@@ -26,7 +26,7 @@ pub(super) struct Runs<'a, 'p> {
     pub(super) observed: &'p [Observed<'a>],
     /// Times at which pressure fields are compared.
     pub(super) fields_at: &'p [f64],
-    pub(super) sides: [crate::study::domain::Side; 2],
+    pub(super) sides: [Side; 2],
     pub(super) cancelled: Option<&'p Arc<AtomicBool>>,
     pub(super) progress: &'p mut dyn FnMut(StudyProgress) -> ControlFlow<()>,
     /// Number of runs, convolution equivalents times cells so far, and what the study expects its end to cost.
@@ -48,7 +48,6 @@ pub(super) struct Level {
     pub(super) fields: Vec<KeptFields>,
     /// The contact of all times.
     pub(super) domain: Domain,
-    pub(super) steps: usize,
     /// Convolution equivalents.
     pub(super) convolutions: f64,
     pub(super) bytes: u64,
@@ -111,12 +110,15 @@ impl Runs<'_, '_> {
         }
         drop(run);
         self.runs += 1;
-        let steps = times.len();
-        Ok(Level { grid, builder, contact, times, values, fields, domain, steps, convolutions, bytes })
+        Ok(Level { grid, builder, contact, times, values, fields, domain, convolutions, bytes })
     }
 }
 
 impl Level {
+    pub(super) fn steps(&self) -> usize {
+        self.times.len()
+    }
+
     /// The difference of each observable from a run on a finer mesh or in shorter steps, at all ends of steps that
     /// both have.
     pub(super) fn differences(&self, finer: &Level, observed: &[Observed<'_>]) -> Vec<f64> {
@@ -132,8 +134,8 @@ impl Level {
             Reading::Greatest(_) => difference(&self.values[k], &finer.values[k]),
             Reading::Pressure => {
                 let pairs = self.fields.iter().zip(&finer.fields).map(|(own, other)| {
-                    let of = |kept: &KeptFields| kept.fields().pressure().to_vec();
-                    difference_of_fields((&of(own), self.grid.cells()), (&of(other), finer.grid.cells()))
+                    let [own, other] = [own, other].map(|kept| kept.fields().pressure());
+                    difference_of_fields((own, self.grid.cells()), (other, finer.grid.cells()))
                 });
                 pairs.fold(0.0, f64::max)
             }

@@ -37,8 +37,14 @@ pub struct Mesh {
 
 impl Mesh {
     pub(super) fn of(level: &Level, changes: Vec<Option<f64>>) -> Mesh {
-        let Level { grid, steps, convolutions, .. } = level;
-        Mesh { cells: grid.cells(), spacing: grid.spacing(), steps: *steps, convolutions: *convolutions, changes }
+        let Level { grid, convolutions, .. } = level;
+        Mesh {
+            cells: grid.cells(),
+            spacing: grid.spacing(),
+            steps: level.steps(),
+            convolutions: *convolutions,
+            changes,
+        }
     }
 
     /// The side of a square of the area of a cell, along x1 on a line.
@@ -253,13 +259,13 @@ impl StudyResult {
             shorter = shorter.max(own.time / (TO_TIME * target));
         }
         let coarsest = self.meshes.first()?.cells;
-        let least = 1.0 / (self.finest.grid.cells()[0] as f64 / coarsest[0] as f64);
-        let finer = finer.max(least);
+        // no coarser than the first mesh
+        let finer = finer.max(coarsest[0] as f64 / self.finest.grid.cells()[0] as f64);
         let cells = self.finest.grid.cells().map(|n| if n == 1 { 1 } else { (finer * n as f64).ceil() as usize });
         // as numbers: cells of an order of a half may be more than memory could ever hold
         let many = cells.iter().map(|n| *n as f64).product::<f64>() / self.finest.grid.len() as f64;
-        let steps = self.finest.steps as f64 * shorter.max(1e-3).powf(self.growth.steps);
-        let work = self.work_of_finest() * steps / self.finest.steps.max(1) as f64
+        let steps = self.finest.steps() as f64 * shorter.max(1e-3).powf(self.growth.steps);
+        let work = self.work_of_finest() * steps / self.finest.steps().max(1) as f64
             * many
             * finer.powf(self.growth.convolutions);
         Some(Cost { cells, steps: steps.ceil() as usize, work, bytes: (self.bytes() as f64 * many) as u64 })
@@ -312,7 +318,7 @@ impl fmt::Display for StudyResult {
             "accuracy {:.0e}: {}; {n1} × {n2} cells of {side:.2e} m, {} steps, {} runs",
             self.accuracy.target(),
             self.ending,
-            self.finest.steps,
+            self.finest.steps(),
             self.runs
         )?;
         let width = |own: &Measured| own.name.len().max(9);

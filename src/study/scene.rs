@@ -8,6 +8,7 @@ use crate::contact::{Builder, Settings};
 use crate::elastic::ElasticBuilder;
 use crate::error::Result;
 use crate::load::LoadHistory;
+use crate::states::softest_compliance;
 use crate::study::Accuracy;
 
 /// The scene on a grid, with these settings.
@@ -40,15 +41,10 @@ impl Scene<'_> {
 }
 
 impl Builder {
-    /// The sum of the contact compliances at the end of a run, as far as the materials are known; at once where it is
-    /// infinite then.
+    /// The greatest compliance of the bodies in a run.
     pub(super) fn compliance_until(&self, until: f64) -> Result<f64> {
-        let creeping = self.temperature.as_ref().map_or(Ok(until), |history| history.reduced_time(0.0, until))?;
-        let at = |time: f64| {
-            let bodies = [&self.material, &self.counter_body].into_iter().flatten();
-            bodies.map(|body| body.contact_compliance(time.min(body.known_until()))).sum::<f64>()
-        };
-        Ok(Some(at(creeping)).filter(|c| c.is_finite()).unwrap_or_else(|| at(0.0)))
+        let bodies: Vec<_> = [&self.material, &self.counter_body].into_iter().flatten().collect();
+        softest_compliance(&bodies, self.temperature.as_ref(), until)
     }
 }
 

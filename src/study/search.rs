@@ -170,12 +170,14 @@ fn first_mesh(runs: &mut Runs<'_, '_>, mut domain: Domain, most_cells: usize) ->
         }
     };
     let mut base = level;
-    let (common, mut stops) = (base.times.clone(), Vec::new());
-    let mut shorter = tolerance / SHORTER;
-    let mut fine = runs.level(base.grid.clone(), shorter.max(TOLERANCES[0]), &common)?;
-    let steps_order = ((fine.steps as f64 / base.steps.max(1) as f64).ln() / SHORTER.ln()).clamp(0.0, 1.0);
+    let (common, mut stops, mut steps_order) = (base.times.clone(), Vec::new(), 0.0);
     let mut in_time = Vec::new();
     for tries in 0..=MOST_SHORTENED {
+        let fine = runs.level(base.grid.clone(), (tolerance / SHORTER).max(TOLERANCES[0]), &common)?;
+        if tries == 0 {
+            let more = fine.steps() as f64 / base.steps().max(1) as f64;
+            steps_order = (more.ln() / SHORTER.ln()).clamp(0.0, 1.0);
+        }
         let differences = base.differences(&fine, runs.observed);
         in_time = differences.into_iter().map(|difference| OF_BOTH * difference).collect();
         let worst = worst_asked(runs.observed, &in_time);
@@ -185,8 +187,6 @@ fn first_mesh(runs: &mut Runs<'_, '_>, mut domain: Domain, most_cells: usize) ->
         tolerance = (tolerance * (AIM_IN_TIME * accuracy / worst).max(1.0 / SHORTER)).max(TOLERANCES[0]);
         base = runs.level(base.grid.clone(), tolerance, &common)?;
         stops.clone_from(&common);
-        shorter = (tolerance / SHORTER).max(TOLERANCES[0]);
-        fine = runs.level(base.grid.clone(), shorter, &common)?;
     }
     Ok(First { level: base, domain, across, steps: Steps { stops, tolerance }, in_time, steps_order })
 }

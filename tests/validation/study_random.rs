@@ -399,10 +399,9 @@ pub(super) fn tell_their_errors(scenes: impl Iterator<Item = Scene>, limit: u64)
         }
         if result.is_converged() {
             reached += 1;
-            for (error, is_asked) in errors.iter().zip([true, scene.area]).filter(|(_, is_asked)| *is_asked) {
-                let _ = is_asked;
-                error.iter().for_each(|error| over.push(error / asked, &scene.name));
-            }
+            let asked_for =
+                errors.iter().zip([true, scene.area]).filter_map(|(error, is_asked)| error.filter(|_| is_asked));
+            asked_for.for_each(|error| over.push(error / asked, &scene.name));
         }
     }
     println!("{reached} of {count} reached what was asked on at most {limit}² cells");
