@@ -41,8 +41,8 @@
 mod as_contact;
 mod beside;
 mod closed_forms;
-mod coarser;
 mod contact;
+mod contacts;
 mod control;
 mod curve;
 mod elastic;
@@ -51,7 +51,9 @@ mod levels;
 mod outside;
 mod passage;
 mod pressed;
+mod profile;
 mod reach;
+mod refined;
 mod repeated;
 mod rounded;
 mod run;
@@ -59,7 +61,6 @@ mod run_fields;
 #[cfg(feature = "checkpoint")]
 mod saved;
 mod sweep;
-mod twin;
 
 pub use crate::error::StatesError;
 pub use contact::StatesContact;

@@ -4,6 +4,13 @@ use crate::error::{Result, StatesError};
 
 /// Greatest fall of a pressure, over the greatest pressure, that is always taken for an error of the solver.
 const ALLOWED_FALL: f64 = 1e-4;
+/// The same over the tolerance of a solver.
+const OVER_TOLERANCE: f64 = 1e2;
+
+/// Fall of a pressure, over the greatest, that is taken for an error of a solver of this tolerance.
+pub(super) fn allowed_fall(tolerance: f64) -> f64 {
+    ALLOWED_FALL.max(OVER_TOLERANCE * tolerance)
+}
 
 /// The cells in contact, in ascending order, and their pressures: 12 bytes a cell.
 #[derive(Debug, Clone, Default)]
@@ -26,7 +33,7 @@ impl Pressed {
     /// Nowhere may the pressure fall from here to `after`, while the load grows from the first level to the second,
     /// by more than this share of the greatest.
     pub(crate) fn check_growth(&self, after: &Pressed, levels: [f64; 2], allowed: f64) -> Result<()> {
-        let (fall, allowed) = (self.greatest_fall_to(after), allowed.max(ALLOWED_FALL));
+        let fall = self.greatest_fall_to(after);
         if fall > allowed { Err(StatesError::Shrinks { levels, fall, allowed }.into()) } else { Ok(()) }
     }
 

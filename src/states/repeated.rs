@@ -8,26 +8,24 @@ use crate::load::{Load, LoadHistory};
 use crate::run::Stepping;
 use crate::states::contact::StatesContact;
 use crate::states::curve::ElasticStates;
+use crate::states::profile::Profile;
 use crate::states::reach::Loading;
-use crate::states::twin::Profile;
 
-/// Tolerance of the steps that show how long steps of a run may be.
+/// Tolerance of the steps that show how long steps of a run may be, and the parts of each at first.
 const COARSE: f64 = 1e-3;
-/// Number of its own steps in each of these. Under a given approach its steps are shorter: a small force may be what
-/// is left of large ones.
-const PARTS_OF_STEP: usize = 8;
-const PARTS_BY_APPROACH: usize = 32;
-/// Greatest number of its own steps, and the most to be halved for a field.
-const MOST_STEPS: usize = 4000;
+const FIRST_PARTS: u32 = 2;
+/// Greatest number of steps that are halved.
 const MOST_HALVED: usize = 8000;
+/// Steps twice as long err by so many times more, the order being 2.
+const OF_LONGER: f64 = 3.0;
+/// Parts of the levels whose mean tractions are compared.
+const PARTS_COMPARED: usize = 16;
 /// The shortest step, over the time since the start.
 const SHORTEST: f64 = 1e-7;
 /// The last step before a time, over the time since the start.
 const LAST_STEP: f64 = 1e-5;
 /// The accuracy of a field holds relative to this part of the greatest force at least.
 pub(super) const LEAST_FORCE: f64 = 0.01;
-/// States of the curve nearer than this factor of the level are one.
-pub(super) const NEAREST: f64 = 1e-6;
 
 /// Repeats a run on levels.
 #[derive(Debug, Clone)]
@@ -41,6 +39,8 @@ pub(crate) struct Repeated {
     forces: Vec<(f64, f64)>,
     /// The part by which steps before a time are shorter than the one before.
     shortening: f64,
+    /// Whether all loads are forces.
+    by_force: bool,
 }
 
 /// A contact on levels at a time.
@@ -48,12 +48,14 @@ pub(crate) struct Found {
     pub(crate) contact: StatesContact,
     /// The greatest force so far.
     force: f64,
+    by_force: bool,
 }
 
 impl Repeated {
     /// Before the run is known.
     pub(super) fn unknown(origin: StatesContact, accuracy: f64) -> Repeated {
-        Repeated { origin, accuracy, schedule: Vec::new(), forces: Vec::new(), shortening: accuracy.sqrt() }
+        let (schedule, forces, shortening) = (Vec::new(), Vec::new(), accuracy.sqrt());
+        Repeated { origin, accuracy, schedule, forces, shortening, by_force: true }
     }
 
     /// A run from `origin`; and its greatest level.
@@ -73,16 +75,14 @@ impl Repeated {
             forces.push((report.time, force));
         }
         drop(run);
+        let part = |pair: &[f64], k: u32| pair[0] + (pair[1] - pair[0]) * f64::from(k) / f64::from(FIRST_PARTS);
+        let within = |pair: &[f64]| (1..FIRST_PARTS).map(|k| part(pair, k)).chain([pair[1]]).collect::<Vec<_>>();
+        let schedule = ends.windows(2).filter(|pair| pair[1] > pair[0]).flat_map(within).collect();
         let mut by_force = true;
         for end in &ends {
             by_force &= history.checked_at(*end, false)?.is_force();
         }
-        let most = if by_force { PARTS_OF_STEP } else { PARTS_BY_APPROACH };
-        let parts = (MOST_STEPS / ends.len()).clamp(1, most);
-        let part = |pair: &[f64], k: usize| pair[0] + (pair[1] - pair[0]) * k as f64 / parts as f64;
-        let within = |pair: &[f64]| (1..parts).map(|k| part(pair, k)).chain([pair[1]]).collect::<Vec<_>>();
-        let schedule = ends.windows(2).filter(|pair| pair[1] > pair[0]).flat_map(within).collect();
-        Ok((Repeated { origin, accuracy, schedule, forces, shortening: accuracy.sqrt() }, greatest))
+        Ok((Repeated { origin, accuracy, schedule, forces, shortening: accuracy.sqrt(), by_force }, greatest))
     }
 
     /// The run on other elastic states of the same surface.
@@ -92,8 +92,24 @@ impl Repeated {
         repeated
     }
 
+    /// The contact at a time, in steps that are halved until they leave so little of the pressure, and what they leave.
+    pub(super) fn in_short_steps(
+        &mut self,
+        history: &dyn LoadHistory,
+        at: (f64, bool),
+        allowed: f64,
+    ) -> Result<(Found, f64)> {
+        loop {
+            let mut found = self.at(history, at.0, at.1)?;
+            let error = found.distance(&mut self.by_longer_steps(history, at)?)? / OF_LONGER;
+            if error <= allowed || !self.halve() {
+                return Ok((found, error));
+            }
+        }
+    }
+
     /// Halves its steps; false where they are too many already.
-    pub(super) fn halve(&mut self) -> bool {
+    fn halve(&mut self) -> bool {
         // the ends graded towards a time are about as many as steps of its shortening
         if self.schedule.len() > MOST_HALVED || self.shortening * (MOST_HALVED as f64) < 1.0 {
             return false;
@@ -123,7 +139,7 @@ impl Repeated {
     }
 
     /// The same in steps twice as long, except where they end at corners of the load.
-    pub(super) fn by_longer_steps(&self, history: &dyn LoadHistory, at: (f64, bool)) -> Result<Found> {
+    fn by_longer_steps(&self, history: &dyn LoadHistory, at: (f64, bool)) -> Result<Found> {
         let mut corner = history.next_breakpoint(self.origin.time());
         let is_kept = |(k, end): &(usize, f64)| {
             let is_corner = corner.is_some_and(|corner| corner <= *end);
@@ -168,7 +184,7 @@ impl Repeated {
                 corner = history.next_breakpoint(next);
             }
         }
-        Ok(Found { contact, force })
+        Ok(Found { contact, force, by_force: self.by_force })
     }
 }
 
@@ -177,14 +193,26 @@ impl Found {
         self.contact.force().max(LEAST_FORCE * self.force)
     }
 
-    pub(super) fn density(&self) -> f64 {
-        Profile::new(self.contact.tractions()).density()
+    pub(super) fn profile(&self) -> Profile {
+        Profile::new(self.contact.tractions())
     }
 
     /// How far the bodies are apart \[m\].
-    pub(super) fn clearance(&mut self) -> Result<f64> {
+    fn clearance(&mut self) -> Result<f64> {
         let time = self.contact.time();
-        Ok(if self.contact.level() > 0.0 { 0.0 } else { self.contact.surface_at(time)? - self.contact.depth() })
+        Ok(self.contact.surface_at(time)? - self.contact.depth())
+    }
+
+    /// How far the pressures of two repetitions are apart, in L1 over the force: infinite where both are apart by less
+    /// than they differ in that.
+    pub(super) fn distance(&mut self, other: &mut Found) -> Result<f64> {
+        if !self.by_force && self.contact.level().max(other.contact.level()) == 0.0 {
+            let [own, other] = [self.clearance()?, other.clearance()?];
+            return Ok(if (own - other).abs() < own { 0.0 } else { f64::INFINITY });
+        }
+        let (own, size) = (self.profile(), self.size());
+        let off = own.distance(&other.profile(), &own.cuts(PARTS_COMPARED));
+        Ok(if size > 0.0 { off / size } else { 0.0 })
     }
 }
 

@@ -15,7 +15,7 @@ use crate::load::{Load, Tilt, load_point};
 use crate::solver::RigidMotion;
 use crate::states::curve::{ElasticState, ElasticStates};
 use crate::states::elastic::{Solved, state_under};
-use crate::states::pressed::Pressed;
+use crate::states::pressed::{Pressed, allowed_fall};
 use crate::states::reach::{MARGIN, Reach};
 
 /// Finds the elastic states of a shape on a body, each as an [`ElasticContact`] of unit compliance.
@@ -41,8 +41,6 @@ const LEAST_LEVEL: f64 = 1e-12;
 const LINEAR_LEVEL: f64 = 1e-6;
 /// Levels closer than by this factor have no state between them.
 const FINEST: f64 = 1.001;
-/// Greatest fall of a pressure, over the greatest pressure, that is taken for an error of a solver of this tolerance.
-const FALL_OVER_TOLERANCE: f64 = 1e2;
 /// The error of a pressure counts relative to this part of the greatest load at least.
 const LEAST_LOAD: f64 = 0.01;
 /// The error in the middle of two states is so much below the accuracy: elsewhere between them it may be greater.
@@ -149,7 +147,7 @@ impl Sweep {
             last_depth: 0.0,
             last_level: 0.0,
             first_level: 0.0,
-            allowed_fall: FALL_OVER_TOLERANCE * self.settings.tolerance,
+            allowed_fall: allowed_fall(self.settings.tolerance),
             solved: Vec::new(),
             kept: self.keep_pressures.then(Vec::new),
             error: 0.0,
