@@ -8,6 +8,8 @@
 //!
 //! `cargo run --release -p viscocontact --features analytic,plot,sliding --example rolling_cylinder`
 
+#[path = "support/scenes/march.rs"]
+mod march;
 #[path = "support/scenes/rolling.rs"]
 mod reference;
 mod support;
@@ -17,6 +19,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use clap::Parser;
+use march::{March, march};
 use reference::RollingCylinder;
 use viscocontact::Result;
 use viscocontact::analytic;
@@ -90,14 +93,9 @@ fn roll(scene: &RollingCylinder, material: &Material, velocity: f64, cells: usiz
         .kernel(InfluenceKernel::line(&grid, 10.0 * grid.lengths()[0])?)
         .settings(Settings::default().with_frame(Frame::Indenter))
         .build()?;
-    let motion = SteadyMotion::new(Axis::X1, velocity, Load::force(scene.per_length)).with_tolerance(5e-3);
-    let mut run = contact.toward_steady(motion)?;
-    let (mut steps, mut convolutions) = (0, 0);
-    while let Some(report) = run.next_step()? {
-        steps += 1;
-        convolutions += report.convolutions;
-    }
-    let distance = run.distance();
+    // the bodies pass the whole grid
+    let (load, length) = (Load::force(scene.per_length), grid.lengths()[0]);
+    let March { steps, convolutions, distance } = march(&mut contact, Axis::X1, velocity, load, (length, 5e-3))?;
     let near = |x: f64| (x - axis).abs() < 1.5 * relaxed;
     let points = contact.pressure().iter().enumerate().map(|(i, &p)| (grid.center(i, 0)[0], p));
     Ok(Rolled {

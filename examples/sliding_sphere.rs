@@ -6,6 +6,8 @@
 //!
 //! `cargo run --release -p viscocontact --features plot --example sliding_sphere`
 
+#[path = "support/scenes/march.rs"]
+mod march;
 mod support;
 
 use std::error::Error;
@@ -14,6 +16,7 @@ use std::fs;
 use std::path::{Path as File, PathBuf};
 
 use clap::Parser;
+use march::march;
 use viscocontact::Result;
 use viscocontact::plot::{COLORS, Chart, Legend, Map, Quantity, Scale, Style};
 use viscocontact::prelude::*;
@@ -85,7 +88,9 @@ impl Bodies {
             .material(self.material.clone())
             .settings(Settings::default().with_frame(Frame::Indenter))
             .build()?;
-        contact.toward_steady(SteadyMotion::new(Axis::X1, velocity, self.load).with_tolerance(5e-3))?.run()?;
+        // the bodies pass the whole grid
+        let length = contact.grid().lengths()[0];
+        march(&mut contact, Axis::X1, velocity, self.load, (length, 5e-3))?;
         Ok((contact, sphere))
     }
 }

@@ -243,7 +243,7 @@ pub mod prelude {
         Burgers, Elastic, FnRheology, FractionalMaxwell, FractionalZener, GeneralizedKelvin, GeneralizedMaxwell,
         KelvinVoigt, Kww, LogCreep, Material, Maxwell, PowerLaw, Rheology, SlowCreep, Tension, Zener,
     };
-    pub use crate::run::{Crossing, Run, SteadyMotion, Stepping, Times};
+    pub use crate::run::{Crossing, Run, Stepping, Times};
     #[cfg(feature = "sliding")]
     pub use crate::sliding::SteadySliding;
     #[cfg(feature = "states")]

@@ -9,6 +9,7 @@ use viscocontact::prelude::*;
 
 use crate::claim::{Checked, Outcome};
 use crate::elastic::{G, along_x1, between};
+use crate::march::march;
 use crate::rolling::RollingCylinder;
 use crate::step_loaded_sphere::{StepLoadedSphere, errors};
 
@@ -251,7 +252,7 @@ pub fn rolling() -> Outcome {
         .settings(Settings::default().with_frame(Frame::Indenter))
         .build()?;
     let load = Load::force(scene.per_length);
-    contact.toward_steady(SteadyMotion::new(Axis::X1, scene.reach, load).with_tolerance(2e-4))?.run()?;
+    march(&mut contact, Axis::X1, scene.reach, load, (grid.lengths()[0], 2e-4))?;
     let [behind, ahead] = exact.ends();
     let friction = contact.fields().lateral_force(&cylinder)[0] / contact.force();
     let axis = 1e3 * (0.5 * grid.lengths()[0] - 2.0 * relaxed);

@@ -10,6 +10,8 @@ mod elastic;
 mod energies;
 mod history;
 mod layers;
+#[path = "../support/scenes/march.rs"]
+mod march;
 #[path = "../support/scenes/noise.rs"]
 mod noise;
 #[path = "../support/scenes/rolling.rs"]

@@ -195,31 +195,6 @@ impl ViscoelasticContact {
         Ok((StepReport(report.step), (report.position, report.lateral_force, report.power)))
     }
 
-    /// Moves the indenter steadily along an axis (0 or 1) with `velocity` [m/s], by steps of whole cells, until the state is steady.
-    /// Needs frame="indenter". `SteadySliding` finds the state at once.
-    ///
-    /// Returns the change of the pressure over the last contact length, and the distance travelled [m].
-    #[pyo3(signature = (along, velocity, load, *, tolerance=1e-3, max_distance=None))]
-    fn toward_steady(
-        &mut self,
-        py: Python<'_>,
-        along: usize,
-        velocity: f64,
-        load: &Load,
-        tolerance: f64,
-        max_distance: Option<f64>,
-    ) -> PyResult<(f64, f64)> {
-        let motion = vc::run::SteadyMotion::new(axis(along)?, velocity, load.load)
-            .with_tolerance(tolerance)
-            .with_max_distance(max_distance);
-        let cancel = Arc::clone(&self.cancel);
-        self.compute(py, |contact, _| {
-            let mut run = contact.toward_steady(motion)?.cancelled_by(cancel);
-            while run.next_step()?.is_some() {}
-            Ok((run.change(), run.distance()))
-        })
-    }
-
     /// Replaces the shapes between two steps, moved or changed: a shape, an array of gaps, or a sequence with one for each body.
     fn set_geometry(&mut self, py: Python<'_>, geometry: &Bound<'_, PyAny>) -> PyResult<()> {
         let contact = self.held.free()?;

@@ -33,7 +33,7 @@ impl StepReport {
     }
 
     /// The numbers behind the warnings, None where the scene is far from the limit: "max_slope", "compression", "cells_across", "cells_in_wave", "periods",
-    /// "cells_in_zone", "modulus" [Pa], "touch" [m] and "unmeasured".
+    /// "cells_in_zone", "modulus" [Pa], "touch" [m], "unmeasured" and "wake".
     #[getter]
     fn figures<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         figures(py, &self.0.figures)
@@ -56,6 +56,7 @@ pub fn figures<'py>(py: Python<'py>, of: &ct::Figures) -> PyResult<Bound<'py, Py
         "modulus": of.modulus,
         "touch": of.touch,
         "unmeasured": of.unmeasured,
+        "wake": of.wake,
     })
 }
 

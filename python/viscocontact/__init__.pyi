@@ -1274,15 +1274,6 @@ class ViscoelasticContact:
         *,
         track: Shape | None = None,
     ) -> tuple[StepReport, tuple[list[float], list[float], float]]: ...
-    def toward_steady(
-        self,
-        along: int,
-        velocity: float,
-        load: Load,
-        *,
-        tolerance: float = 1e-3,
-        max_distance: float | None = None,
-    ) -> tuple[float, float]: ...
     def follow(
         self,
         load: _LoadLike,

@@ -35,7 +35,7 @@ mod stepper;
 
 #[cfg(feature = "checkpoint")]
 pub use crate::error::CheckpointError;
-pub use crate::error::{StepError, Unsteady};
+pub use crate::error::StepError;
 pub use crate::fields::BodyState;
 pub use builder::Builder;
 pub use builder::memory::Memory;

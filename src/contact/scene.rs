@@ -7,7 +7,7 @@ use crate::contact::read::limits::Limits;
 use crate::equilibrium::Ground;
 use crate::error::Result;
 use crate::hereditary::HistoryInputs;
-use crate::rheology::{Material, TemperatureHistory};
+use crate::rheology::{CreepSpectrum, Material, TemperatureHistory};
 
 /// The constants of a contact. A contact and its clones share one.
 #[derive(Debug, Clone)]
@@ -16,6 +16,8 @@ pub(crate) struct Scene {
     pub(crate) material: Material,
     pub(crate) limits: Limits,
     pub(crate) temperature: Option<TemperatureHistory>,
+    /// Creep of bodies that the indenter moves over, and that end.
+    pub(crate) creep: Option<CreepSpectrum>,
     /// Fingerprint of the gap as built.
     #[cfg(feature = "checkpoint")]
     pub(crate) built: Built,

@@ -47,6 +47,9 @@ pub struct Figures {
     /// that pass at frequencies at which the material was not measured, if more than a tenth
     /// ([`Warnings::FREQUENCIES`]).
     pub unmeasured: Option<f64>,
+    /// Part of approach or lateral force by which traces that have left the grid could change it, if more than 1 %
+    /// ([`Warnings::WAKE`]): a bound.
+    pub wake: Option<f64>,
 }
 
 impl Figures {
@@ -64,6 +67,7 @@ impl Figures {
             Warnings::MODULUS => ("E* in Pa:", self.modulus),
             Warnings::NO_CONTACT => ("they touch at an approach in m of", self.touch),
             Warnings::FREQUENCIES => ("part of the energy:", self.unmeasured),
+            Warnings::WAKE => ("part of approach or lateral force:", self.wake),
             Warnings::LONG_STEP => ("relative error", time_error),
             _ => ("", None),
         };

@@ -121,6 +121,11 @@ bitflags! {
         /// table is elastic beyond its data, and resists too little. Measure at the frequencies q·v
         /// of the waves in contact.
         const FREQUENCIES = 1 << 20;
+        /// Traces of the indenter have left the grid behind it that could change approach or lateral force by more
+        /// than 1 % ([`Figures::wake`](crate::contact::Figures::wake)): friction comes out too small. Lengthen the
+        /// grid behind the contact, to some v τ of the slowest creep, or compute the steady state at once
+        /// ([`sliding`](crate::motion)).
+        const WAKE = 1 << 21;
     }
 }
 
@@ -141,7 +146,7 @@ impl IntoIterator for &Warnings {
 }
 
 /// What each warning says, and its cure.
-const MESSAGES: [(Warnings, &str); 21] = [
+const MESSAGES: [(Warnings, &str); 22] = [
     (Warnings::NEAR_EDGE, "contact is within two cells of the edge of the grid: enlarge the grid"),
     (Warnings::FEW_CELLS, "contact is fewer than 8 cells across, of a body or of patches on average: refine the mesh"),
     (Warnings::EXTRAPOLATED, "the material is extrapolated beyond its data: measure it longer, or end earlier"),
@@ -179,6 +184,7 @@ const MESSAGES: [(Warnings, &str); 21] = [
         "waves in contact pass at frequencies at which the material was not measured: measure there, or change \
         the speed",
     ),
+    (Warnings::WAKE, "traces that still recover have left the grid: lengthen it behind the contact"),
     (Warnings::NO_CONTACT, "the bodies never touched in the run: raise the approach, or check its sign and unit"),
 ];
 

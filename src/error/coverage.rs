@@ -69,7 +69,6 @@ not_covered! {
     STEP_ALONG_PATH: "a step along a path",
         Ranks: ONE_PROCESS, Attraction: "keep the indenter in place", FixedToIndenter: OTHER_FRAME;
     STEP_OVER_BODIES: "a step over the bodies", FixedToBodies: OTHER_FRAME;
-    MOTION_TO_STEADY: "a motion to its steady state", FixedToBodies: OTHER_FRAME;
     OTHER_GEOMETRY: "another geometry", Ranks: ONE_PROCESS;
     BROKEN_SYMMETRY: "a load that breaks the symmetry of the scene (unless Settings::symmetry is false)",
         Ranks: ONE_PROCESS;

@@ -51,9 +51,7 @@ impl Error {
                 SlidingError::NotConverged { .. } | SlidingError::Rounding { .. } | SlidingError::Drives { .. },
             )
             | Error::States(StatesError::OutOfOrder { .. })
-            | Error::Step(
-                StepError::NotConverged { .. } | StepError::StepTooShort { .. } | StepError::NotSteady { .. },
-            ) => ErrorKind::Convergence,
+            | Error::Step(StepError::NotConverged { .. } | StepError::StepTooShort { .. }) => ErrorKind::Convergence,
             Error::States(StatesError::Beyond { .. } | StatesError::Below { .. }) => ErrorKind::Value,
             Error::NotCovered { .. }
             | Error::Sliding(SlidingError::ThinLayer { .. })

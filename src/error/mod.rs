@@ -20,7 +20,6 @@ mod states;
 mod step;
 mod table;
 mod text;
-mod unsteady;
 mod user;
 mod violation;
 
@@ -46,7 +45,6 @@ pub use states::StatesError;
 pub use step::StepError;
 pub use table::{Place, TableError};
 pub use text::TextError;
-pub use unsteady::Unsteady;
 pub use user::UserError;
 pub(crate) use user::{Failure, unless_failed};
 pub(crate) use violation::KIND_OF_LOAD;

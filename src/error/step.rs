@@ -1,4 +1,4 @@
-use super::{Convergence, Unsteady};
+use super::Convergence;
 use crate::axis::Axis;
 use crate::rounded::{TIME, rounded};
 
@@ -167,25 +167,6 @@ pub enum StepError {
         time: f64,
         /// The quantity that overflowed.
         what: &'static str,
-    },
-
-    /// The load of a steady motion brings no cell into contact.
-    #[error("at t = {time} s the load brings no cell into contact: a steady motion needs contact, a force or a \
-        greater approach", time = rounded(*.time, TIME))]
-    NoContact {
-        /// Time of the contact \[s\].
-        time: f64,
-    },
-
-    /// The motion did not become steady. A greater tolerance would not bring the steady state nearer.
-    #[error("no steady state within {tolerance:e} after {} m: {reason}", rounded(*.distance, 4))]
-    NotSteady {
-        /// Distance travelled \[m\].
-        distance: f64,
-        /// Relative change allowed.
-        tolerance: f64,
-        /// What is still missing, and what would bring it.
-        reason: Unsteady,
     },
 }
 

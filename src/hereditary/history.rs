@@ -252,12 +252,6 @@ impl History {
         }
     }
 
-    /// How much the source of a moving frame would still change under this pressure, see [`MovingFrame::outstanding`].
-    pub(crate) fn outstanding(&self, creep: &CreepSpectrum, stride: [isize; 2], pressure: &[f64]) -> Option<Vec<f64>> {
-        let (rule, frame) = (self.exponential_rule()?, self.frame.as_ref()?);
-        Some(frame.outstanding(rule, creep, stride, pressure)).filter(|change| !change.is_empty())
-    }
-
     /// u − u_old, by which a free displacement recedes in the step predicted last: calls `take` with it for each cell
     /// that is `wanted`. Only the exponential rule has it.
     pub(crate) fn recovery(&self, wanted: impl Fn(usize) -> bool, mut take: impl FnMut(usize, f64)) {

@@ -4,7 +4,6 @@ use crate::hereditary::exponential_rule::ExponentialRule;
 use crate::hereditary::field::{Field, Role};
 use crate::hereditary::remembered_field::RememberedField;
 use crate::kernel::{LocalKernel, Workspace};
-use crate::rheology::CreepSpectrum;
 
 /// The past kept as the field U with u = K U, and its branches, which follow the recursion of u itself, K and the
 /// bodies being linear. U vanishes wherever there never was contact: what enters the grid across its edge is known,
@@ -104,70 +103,9 @@ impl MovingFrame {
         }
     }
 
-    /// How much U would still change if `pressure` stayed on its cells and steps like the last one, of a `stride` of
-    /// one cell along an axis, went on for ever. Of elastic bodies nothing.
-    ///
-    /// The bodies carry U through the cells of a line, one in each step. Where U no longer changed, the rule would
-    /// give the pressure that holds it. What the pressure has above that still deforms the bodies, by the steady
-    /// response of their creep.
-    pub(super) fn outstanding(
-        &self,
-        rule: &ExponentialRule,
-        creep: &CreepSpectrum,
-        stride: [isize; 2],
-        pressure: &[f64],
-    ) -> Vec<f64> {
-        let (axis, weights, n2) = (usize::from(stride[0] == 0), &rule.committed, self.cells[1]);
-        let (periodic, count) = (self.periodic[axis], self.cells[axis]);
-        let mut change = vec![0.0; if rule.has_memory() { pressure.len() } else { 0 }];
-        // γ_k of all branches and the dashpot, which has the rest
-        let gains = [0, 1, 2].map(|k| (weights.past[k] - weights.past.get(k + 1).unwrap_or(&0.0)) / weights.c);
-        let rest = |k: usize| gains[k - 1] - weights.branches.iter().map(|branch| branch[k]).sum::<f64>();
-        let dashpot = [0.0, rest(1), rest(2), rest(3)];
-        for line in 0..change.len() / count {
-            // in the order in which a point of the bodies passes the cells
-            let place = |m: usize| if stride[axis] > 0 { count - 1 - m } else { m };
-            let cell = |m: usize| if axis == 0 { line + n2 * place(m) } else { line * n2 + place(m) };
-            // U so many cells before
-            let before = |m: usize, cells: usize| match m.checked_sub(cells) {
-                Some(m) => self.source.now[cell(m)],
-                None if periodic => self.source.now[cell((m + 3 * count - cells) % count)],
-                None => 0.0,
-            };
-            let mut excess: Vec<f64> =
-                (0..count).map(|m| pressure[cell(m)] - rule.equilibrium() * before(m, 0)).collect();
-            for &[decay, first, second, third] in weights.branches.iter().chain([&dashpot]) {
-                // of the differences of U
-                let of = [first + second + third, -first - 2.0 * second - 3.0 * third, second + 3.0 * third, -third];
-                let gain = |m: usize| (0..4).map(|cells| of[cells] * before(m, cells)).sum::<f64>();
-                let carried = carried((0..count).map(gain), decay, periodic);
-                excess.iter_mut().zip(carried).for_each(|(excess, carried)| *excess -= carried);
-            }
-            let decays = creep.terms().iter().map(|&(compliance, time)| (compliance, -weights.dt / time));
-            for (compliance, exponent) in decays.chain([(creep.glassy(), f64::NEG_INFINITY)]) {
-                let gains = excess.iter().map(|excess| -compliance * exponent.exp_m1() * excess);
-                let carried = carried(gains, exponent.exp(), periodic);
-                (0..count).for_each(|m| change[cell(m)] += carried[m]);
-            }
-        }
-        change
-    }
-
     pub(super) fn fields_mut(&mut self) -> [&mut RememberedField; 2] {
         [&mut self.source, &mut self.remainder]
     }
-}
-
-/// The sum of all gains so far, each multiplied by `decay` in every step since; along a periodic line they come round
-/// for ever.
-fn carried(gains: impl ExactSizeIterator<Item = f64> + Clone, decay: f64, periodic: bool) -> Vec<f64> {
-    let round = gains.clone().fold(0.0, |sum, gain| decay * sum + gain);
-    let before = if periodic { round / (1.0 - decay.powi(gains.len() as i32)) } else { 0.0 };
-    let add = |sum: &mut f64, gain: f64| {
-        *sum = decay * *sum + gain;
-        Some(*sum)
-    };
-    gains.scan(before, add).collect()
 }
 
 /// Replaces the value of each cell `[i, j]` by the value of `[i, j] + by`, which along periodic axes comes round, and

@@ -5,7 +5,6 @@
 //! | an indenter along any path, on a grid fixed to the bodies | [`Travel`] and [`ViscoelasticContact::step_along`](crate::ViscoelasticContact::step_along) |
 //! | an indenter and the grid over endless bodies, by whole cells | [`ViscoelasticContact::step_over`](crate::ViscoelasticContact::step_over) |
 //! | a steady motion without steps, one contact problem a velocity | [`sliding`](crate::sliding) |
-//! | steps over the bodies until the state is steady, or a word why it is not | [`ViscoelasticContact::toward_steady`](crate::ViscoelasticContact::toward_steady) |
 //!
 //! Without friction, sliding and rolling differ only in the motion of roughness. The roughness of a *sliding* indenter
 //! moves with it. Each asperity of a *rolling* indenter meets its own point of the track, so that its roughness is

@@ -1,7 +1,7 @@
 //! Runs along a load history, of every contact.
 //!
 //! [`Run`] leads a contact in space ([`ViscoelasticContact`](crate::ViscoelasticContact)) or on elastic states
-//! ([`StatesContact`](crate::states::StatesContact)); [`SteadyRun`] moves one in space to its steady state.
+//! ([`StatesContact`](crate::states::StatesContact)).
 
 // `follow` takes the next step of any contact (`driven`): of given length, or as long as its error allows. In space
 // (`in_space`) `step_control` alone owns the length of a step: `adaptive_step` has it proposed, tries it, has it
@@ -31,7 +31,6 @@ mod run_scale;
 mod samples;
 #[cfg(feature = "checkpoint")]
 mod saving;
-mod steady;
 mod step_control;
 mod tops;
 mod track;
@@ -44,7 +43,6 @@ pub use follow::Run;
 pub(crate) use progress::SAME_TIME;
 pub use progress::{RunProgress, Stepping};
 pub use samples::Sample;
-pub use steady::{SteadyMotion, SteadyRun};
 
 use std::ops::{Deref, DerefMut};
 

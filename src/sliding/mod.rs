@@ -3,8 +3,8 @@
 //! In the frame of an indenter that moves steadily over creeping bodies nothing changes, and no time step is needed:
 //! a wave of the pressure displaces by the compliance of the bodies at the frequency at which it passes a point.
 //! [`SteadySliding`] finds the one state of contact of a velocity and a load, however long the relaxation times are.
-//! To step there takes as many steps as the longest of them:
-//! [`ViscoelasticContact::toward_steady`](crate::ViscoelasticContact::toward_steady) is for watching the approach.
+//! To step there ([`ViscoelasticContact::step_over`](crate::ViscoelasticContact::step_over)) takes as many steps as the
+//! longest of them.
 //!
 //! All friction comes from hysteresis: the surfaces have none.
 

@@ -13,6 +13,8 @@ pub mod histories;
 #[path = "../../examples/support/scenes/indenters.rs"]
 pub mod indenters;
 pub mod love;
+#[path = "../../examples/support/scenes/march.rs"]
+pub mod march;
 pub mod moving_bodies;
 #[path = "../../examples/support/scenes/noise.rs"]
 pub mod noise;

@@ -3,7 +3,7 @@
 use viscocontact::motion::{Straight, Travel};
 use viscocontact::output::Metadata;
 use viscocontact::prelude::*;
-use viscocontact::run::{SteadyMotion, Stepping};
+use viscocontact::run::Stepping;
 
 use crate::engine::{Outcome, Target, Verdict, finite, known};
 use crate::models;
@@ -238,27 +238,6 @@ fn moving(source: &mut Source) -> Verdict {
         return Ok(Outcome::Refused);
     };
     let mut accepted = false;
-    let rolling = frame == Frame::Indenter && source.chance(0.3);
-    if rolling {
-        let motion = SteadyMotion::new(
-            source.choose(&Axis::BOTH),
-            length * source.scale(1e-2, 1e2),
-            models::load(source, length, softness),
-        )
-        .with_tolerance(source.scale(1e-4, 0.5));
-        let Ok(mut toward) = contact.toward_steady(motion) else { return Ok(Outcome::Refused) };
-        for _ in 0..20 {
-            match toward.next_step() {
-                Ok(Some(report)) => {
-                    accepted = true;
-                    look(toward.contact(), &report, source)?;
-                    known("distance and change", [toward.distance(), toward.change()])?;
-                }
-                _ => break,
-            }
-        }
-        return Ok(if accepted { Outcome::Accepted } else { Outcome::Refused });
-    }
     for _ in 0..source.count(1, 6) {
         let (dt, load, before) = (length_of_step(source), models::load(source, length, softness), state(&contact));
         let result = if frame == Frame::Indenter {

@@ -3,6 +3,7 @@
 
 use std::f64::consts::TAU;
 
+use crate::common::march::march;
 use crate::common::{Draws, Ratios, builder_of, from_environment};
 use viscocontact::prelude::*;
 
@@ -70,9 +71,11 @@ impl Scene {
         sliding.at(velocity, load).unwrap_or_else(|error| panic!("{self:?}: {error}"));
         let settings = Settings::default().with_frame(Frame::Indenter).with_tolerance(1e-7);
         let mut marched = builder().kernel(kernel).settings(settings).build().unwrap();
-        let motion =
-            SteadyMotion::new(self.axis, self.velocity, load).with_tolerance(3e-4).with_max_distance(Some(100.0));
-        marched.toward_steady(motion).and_then(|run| run.run()).unwrap_or_else(|error| panic!("{self:?}: {error}"));
+        // a term is e^(−track/(v λ)) short of its limit
+        let slowest = self.terms.iter().map(|(_, time)| *time).fold(0.0, f64::max);
+        let track = (8.0 * self.velocity.abs() * slowest).max(1.0);
+        march(&mut marched, self.axis, self.velocity, load, (track, 3e-4))
+            .unwrap_or_else(|error| panic!("{self:?}: {error}"));
         // from the slope of the shape in both
         [marched.fields(), sliding.fields()]
             .map(|own| self.velocity * own.lateral_force(&shape)[self.axis.index()] / own.force())

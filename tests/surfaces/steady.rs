@@ -1,24 +1,16 @@
-//! Runs towards a steady state: those that arrive are there, and those that do not say why. `STEADY_SCENES` (40) random sliders and
-//! rollers, `STEADY_SEED` (1).
+//! Motions over the bodies to a steady state: where no trace that matters has left the grid they end at the reference, and else they warn.
+//! `STEADY_SCENES` (40) random sliders and rollers, `STEADY_SEED` (1).
 
 use std::f64::consts::{PI, TAU};
 
+use crate::common::march::march;
 use crate::common::steady_sliding::{Below, SteadySliding, SteadyState, Time};
-use crate::common::{Draws, builder_of, from_environment};
-use viscocontact::contact::{Builder, Edge, Unsteady};
+use crate::common::{Draws, Ratios, builder_of, from_environment};
+use viscocontact::contact::{Builder, Edge, Warnings};
 use viscocontact::prelude::*;
 
 /// Glassy compliance of the contact \[1/Pa\].
 pub(super) const GLASSY: f64 = 0.25e-6;
-
-/// What a run lacks of its steady state.
-#[derive(Debug, PartialEq)]
-enum Lacks {
-    Nothing,
-    /// Under bodies that flow there is no steady state.
-    AnyLimit,
-    Told(Unsteady),
-}
 
 /// A slider or roller on cells with sides of 1 m. It moves by one cell in 1 s.
 #[derive(Debug, Clone)]
@@ -41,7 +33,6 @@ pub(super) struct Scene {
     pub(super) fluidity: f64,
     pub(super) force: f64,
     tolerance: f64,
-    max_distance: Option<f64>,
 }
 
 impl Scene {
@@ -105,7 +96,6 @@ impl Scene {
         };
         let longest = terms.iter().map(|(_, reach)| *reach).fold(0.0, f64::max);
         let behind = if periodic { 0.5 * length } else { half + if easy { 10.0 * longest } else { length } };
-        let far = (20.0 * longest).max(4.0 * length);
         Scene {
             below,
             linear,
@@ -126,7 +116,6 @@ impl Scene {
             fluidity: if !easy && draws.chance(0.1) { draws.scale(1e-10, 1e-5) } else { 0.0 },
             force,
             tolerance: if easy { 1e-3 } else { draws.scale(1e-5, 1e-3) },
-            max_distance: (easy || far < 30.0 * length && draws.chance(0.5)).then_some(far),
         }
     }
 
@@ -181,21 +170,22 @@ impl Scene {
         .kernel(kernel.unwrap())
     }
 
-    /// Runs to the steady state; returns the contact, and what it lacks.
-    fn run(&self) -> (ViscoelasticContact, Lacks) {
+    /// v τ of the slowest term.
+    fn longest(&self) -> f64 {
+        self.terms.iter().map(|(_, reach)| *reach).fold(0.0, f64::max)
+    }
+
+    /// Marches to the steady state; returns the contact, and the part of approach or lateral force that what has left the grid could change.
+    fn run(&self) -> (ViscoelasticContact, Option<f64>) {
         let rule = if self.linear { TimeRule::ExponentialLinear } else { TimeRule::Exponential };
         let settings = Settings::default().with_frame(Frame::Indenter).with_time_rule(rule).with_edge(Edge::Allow);
         let mut contact = self.builder().settings(settings.with_tolerance(1e-3 * self.tolerance)).build().unwrap();
-        let motion = SteadyMotion::new(self.axis, self.velocity, Load::force(self.force))
-            .with_tolerance(self.tolerance)
-            .with_max_distance(self.max_distance);
-        let lacks = match contact.toward_steady(motion).and_then(|run| run.run()) {
-            Ok(()) => Lacks::Nothing,
-            Err(Error::Step(StepError::NotSteady { reason, .. })) => Lacks::Told(reason),
-            Err(Error::OutOfRange { field: "fluidity of the contact", .. }) => Lacks::AnyLimit,
-            Err(error) => panic!("{self:?}: {error}"),
-        };
-        (contact, lacks)
+        let (load, cell) = (Load::force(self.force), self.by_axis(self.velocity as isize, 0));
+        let track = (10.0 * self.longest()).max(4.0 * self.length() as f64);
+        march(&mut contact, self.axis, self.velocity, load, (track, self.tolerance)).unwrap();
+        let report = contact.step_over(cell, 1.0, load).unwrap();
+        assert_eq!(report.figures.wake.is_some(), report.warnings.contains(Warnings::WAKE));
+        (contact, report.figures.wake)
     }
 
     pub(super) fn reference(&self, time: Time) -> Option<SteadyState> {
@@ -246,77 +236,46 @@ fn scenes(easy: bool) -> impl Iterator<Item = Scene> {
     (0..scenes).map(move |k| Scene::draw(&mut Draws::new(seed * 1_000_000 + k), easy))
 }
 
-/// Runs the scenes; of all, how many arrived, end on too short a track, on too short a grid, flow, or come to no rest. Those that
-/// arrived are where the reference is.
-fn population(easy: bool) -> [usize; 5] {
-    let (mut counts, mut worst) = ([0; 5], [0.0_f64; 2]);
-    for (k, scene) in scenes(easy).enumerate() {
-        let (contact, lacks) = scene.run();
-        assert_eq!(scene.fluidity > 0.0, lacks == Lacks::AnyLimit, "{k}: {lacks:?} {scene:?}");
-        let which = match lacks {
-            Lacks::Nothing => {
-                let errors = scene.errors(&contact);
-                assert!(errors.iter().all(|error| *error < 0.01), "{k}: {errors:?} {scene:?}");
-                worst = [0, 1].map(|k| worst[k].max(errors[k]));
-                0
-            }
-            Lacks::Told(Unsteady::SlowTerm { .. }) => 1,
-            Lacks::Told(Unsteady::LeftGrid { .. }) => 2,
-            Lacks::AnyLimit => 3,
-            Lacks::Told(_) => 4,
-        };
-        counts[which] += 1;
-    }
-    println!(
-        "{counts:?} arrived, slow, left the grid, flow, come to no rest; friction and approach off by at most {worst:?}"
-    );
-    counts
-}
+/// Errors beyond this are told.
+const MOST: f64 = 0.02;
 
 #[test]
-fn random_motions_that_arrive_are_steady() {
-    let [arrived, slow, left, ..] = population(false);
-    assert!(arrived > 0 && slow > 0 && left > 0, "{arrived} {slow} {left}");
+fn random_motions_are_steady_or_warn() {
+    let (mut silent, mut told, mut untold) = (Ratios::default(), Ratios::default(), Ratios::default());
+    // the track of slower creep is too long for a test
+    let short = |scene: &Scene| scene.fluidity == 0.0 && scene.longest() < 4.0 * scene.length() as f64;
+    for (k, scene) in scenes(false).enumerate().filter(|(_, scene)| short(scene)) {
+        let (contact, missing) = scene.run();
+        let error = scene.errors(&contact).into_iter().fold(0.0, f64::max);
+        println!(
+            "{k}: {error:.1e} {missing:?} {:?} longest {:.1} behind {}",
+            scene.below,
+            scene.longest(),
+            scene.behind
+        );
+        match missing {
+            Some(missing) => told.push(missing / error, ""),
+            None => untold.push(error, ""),
+        }
+        if missing.is_none() && error > MOST {
+            silent.push(error, "");
+        }
+    }
+    told.print("told over true", 0);
+    untold.print("errors that are not told", 0);
+    assert!(silent.count() == 0 && told.count() > 2 && untold.count() > 5, "{silent:?}");
 }
 
 #[test]
 fn random_motions_with_track_and_grid_enough_arrive() {
-    let counts = population(true);
-    assert!(100 * counts[0] >= 95 * counts.iter().sum::<usize>(), "{counts:?}");
-}
-
-/// Does as a run says that does not arrive, up to four times: travels farther, or takes a longer grid. Returns how often, and what
-/// the last run lacks; `None` where that takes more than a test may.
-fn follow_advice(mut scene: Scene) -> Option<(usize, Lacks)> {
-    let length = scene.length() as f64;
-    for told in 0..4 {
-        match scene.run().1 {
-            Lacks::Told(Unsteady::SlowTerm { farther, .. }) if farther < 100.0 * length => {
-                scene.max_distance = Some(scene.max_distance.unwrap_or(10.0 * scene.length() as f64) + farther);
-            }
-            Lacks::Told(Unsteady::LeftGrid { needed, behind, .. }) if needed < 500.0 => {
-                scene.behind += (needed - behind).ceil() as usize;
-            }
-            Lacks::Told(Unsteady::SlowTerm { .. } | Unsteady::LeftGrid { .. }) => return None,
-            lacks => return Some((told, lacks)),
-        }
+    let (mut errors, mut warned) = (Ratios::default(), 0);
+    for scene in scenes(true) {
+        let (contact, missing) = scene.run();
+        errors.push(scene.errors(&contact).into_iter().fold(0.0, f64::max), "");
+        warned += usize::from(missing.is_some());
     }
-    Some((4, scene.run().1))
-}
-
-#[test]
-fn random_motions_that_do_as_told_arrive() {
-    let (mut arrived, mut told) = (0, 0);
-    for (k, scene) in scenes(false).enumerate() {
-        let Some((times @ 1.., lacks)) = follow_advice(scene.clone()) else { continue };
-        told += 1;
-        arrived += usize::from(lacks == Lacks::Nothing);
-        if lacks != Lacks::Nothing {
-            println!("{k}: told {times} times, {lacks:?} {scene:?}");
-        }
-    }
-    println!("{arrived} of {told} arrived as told");
-    assert!(told > 0 && 10 * arrived >= 9 * told, "{arrived} of {told}");
+    errors.print("errors", 0);
+    assert!(errors.greatest() < 0.01 && 20 * warned <= errors.count(), "{warned}");
 }
 
 /// A cylinder over 128 cells of a rigid body.
@@ -334,7 +293,6 @@ fn over_cylinder(radius: f64, side: f64, force: f64) -> SteadySliding {
     }
 }
 
-/// A body without elastic response has a dashpot beside its springs: its limit counts it, too.
 #[test]
 fn a_body_without_elastic_response_arrives() {
     let grid = Grid::new([256, 1], [8.0e-3, 1.0]).unwrap();
@@ -350,8 +308,7 @@ fn a_body_without_elastic_response_arrives() {
     .settings(Settings::default().with_frame(Frame::Indenter))
     .build()
     .unwrap();
-    let motion = SteadyMotion::new(Axis::X1, 0.1, Load::force(force));
-    contact.toward_steady(motion).unwrap().run().unwrap();
+    march(&mut contact, Axis::X1, 0.1, Load::force(force), (grid.lengths()[0], 1e-3)).unwrap();
     let mut sliding = over_cylinder(radius, grid.spacing()[0], force);
     sliding.below = Below::Line(1.0);
     sliding.terms = terms.iter().map(|&(compliance, time)| (0.25 * compliance, 0.1 * time)).collect();

@@ -198,12 +198,15 @@ impl Builder {
         {
             material = times.fit(&material, self.temperature.as_ref(), self.settings.series_tolerance)?;
         }
+        let is_left = kernel.periodic_axes() != [true; 2] && self.settings.frame == Frame::Indenter;
+        let creep = if is_left { material.contact_spectrum()? } else { None };
         let history = history_by(&self.settings, &material, kernel.periodic_axes())?;
         let softening =
             self.attraction.as_deref().map(|law| resolved_softening(law, &material, &self.grid)).transpose()?;
         let attraction = self.attraction.clone();
         let ground = Ground { softening: softening.unwrap_or(0.0), attraction, ..ground };
         let scene = Scene {
+            creep,
             ground,
             limits: Limits::of(&material),
             material,

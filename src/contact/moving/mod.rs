@@ -1,16 +1,16 @@
 //! Indenters that move along the surface or are replaced, and the lateral force that moves them.
 
 pub(in crate::contact) mod along_path;
-pub(crate) mod shortfall;
+mod wake;
 
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 
-use crate::contact::{Step, StepReport, ViscoelasticContact};
-use crate::equilibrium::Indenter;
+use crate::contact::{StepReport, ViscoelasticContact};
+use crate::equilibrium::{Indenter, Warnings};
 use crate::error::{Result, coverage, exact_length};
 use crate::geometry::{Gap, Geometry, Missed, evaluate};
 use crate::load::Load;
+use wake::Wake;
 
 impl ViscoelasticContact {
     /// Replaces the indenter, moved or changed, between two steps; the bodies keep their deformation,
@@ -58,7 +58,8 @@ impl ViscoelasticContact {
     ///
     /// Undisturbed material enters across one edge of the grid; on periodic bodies, material that leaves at one edge
     /// enters at the other. Otherwise the history of material that leaves is dropped: the grid should be long enough
-    /// behind the contact for the bodies to recover, or for the remaining displacement to be far away. Needs
+    /// behind the contact for the bodies to recover, some v τ, or for the remaining displacement to be far away.
+    /// [`Warnings::WAKE`] tells where what has left could change approach or lateral force by more than 1 %. Needs
     /// [`Frame::Indenter`](crate::contact::Frame::Indenter).
     ///
     /// ```
@@ -83,20 +84,15 @@ impl ViscoelasticContact {
     /// # Errors
     /// As [`ViscoelasticContact::step`], or if the grid is fixed to the bodies.
     pub fn step_over(&mut self, cells: [isize; 2], dt: f64, loads: impl AsRef<[Load]>) -> Result<StepReport> {
-        self.step_over_unless(None, cells, dt, loads.as_ref())
-    }
-
-    /// [`ViscoelasticContact::step_over`], unless another thread sets a flag.
-    pub(crate) fn step_over_unless(
-        &mut self,
-        cancelled: Option<&AtomicBool>,
-        cells: [isize; 2],
-        dt: f64,
-        loads: &[Load],
-    ) -> Result<StepReport> {
         self.covers(coverage::STEP_OVER_BODIES)?;
-        let mut step = Step { cancelled, ..self.request_next(dt, loads)? };
+        let mut step = self.request_next(dt, loads.as_ref())?;
         step.interval.stride = cells;
-        self.take(step)
+        let mut report = self.take(step)?;
+        if let Some(reach) = self.fields().extent_of_contact() {
+            let (scene, computation) = (&*self.scene, &self.computation);
+            report.figures.wake = Wake { scene, computation, reach, stride: cells }.missing();
+            report.warnings.set(Warnings::WAKE, report.figures.wake.is_some());
+        }
+        Ok(report)
     }
 }

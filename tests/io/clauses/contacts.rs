@@ -213,27 +213,6 @@ pub fn rows(t: &mut Table) {
     let of_ranks = shared(|mut contact| contact.resume(&path));
     t.row("resume", of_ranks, File, "…computed region is a window of the grid (set Settings::window to false…");
 
-    // a ball that rolls without ever touching, and one whose motion is not steady within its track
-    let steady = |load: Load| {
-        let mut contact = sphere_on(Grid::new([64, 32], [8.0e-3, 4.0e-3]).unwrap(), zener(), over);
-        let motion = SteadyMotion::new(Axis::X1, 0.05, load).with_max_distance(Some(1.0e-3));
-        let mut run = contact.toward_steady(motion).unwrap();
-        loop {
-            match run.next_step() {
-                Ok(Some(_)) => {}
-                Ok(None) => break Ok(()),
-                Err(error) => break Err(error),
-            }
-        }
-    };
-    for (load, kind, says) in [
-        (0.0, Value, "at t = 0.0025 s the load brings no cell into contact: …a greater approach"),
-        (0.1, Convergence, "no steady state within 1e-3 after 0.008 m: …travel farther…"),
-        (10.0, Value, "at t = 0.0025 s the contact touches the edge…: enlarge the grid…"),
-    ] {
-        t.row("SteadyRun::next_step", steady(Load::force(load)), kind, says);
-    }
-
     let steel = || Material::constant_poisson(Elastic::new(80.0e9).unwrap(), 0.3).unwrap();
     let bulk = Material::elastic_bulk(Zener::with_time(1.0e6, 0.5e6, 0.1).unwrap(), 1.0e9).unwrap();
     let of_bulk = Layer::bonded_to_material(1.0e-3, &bulk, &steel());

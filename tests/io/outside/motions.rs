@@ -61,6 +61,23 @@ fn on_layer(thickness: f64, nu: f64, approach: f64) -> Result<String> {
     slid(builder_on(grid(), body()).kernel(kernel), 0.1, Load::approach(approach))
 }
 
+/// What the last step over the bodies tells, once the grid is twice behind.
+fn stepped(builder: Builder, velocity: f64, load: Load) -> Result<String> {
+    let mut contact = builder.settings(Settings::default().with_frame(Frame::Indenter)).build()?;
+    let mut report = contact.step(0.0, load)?;
+    let [cells, _] = contact.grid().cells();
+    for _ in 0..2 * cells {
+        report = contact.step_over([1, 0], contact.grid().spacing()[0] / velocity, load)?;
+    }
+    Ok(report.messages().collect::<Vec<_>>().join("; "))
+}
+
+fn stepped_in_line(velocity: f64) -> Result<String> {
+    let grid = Grid::new([128, 1], [8.0e-3, 1.0])?;
+    let kernel = InfluenceKernel::line(&grid, 1.0)?;
+    stepped(builder_of(&Cylinder::new(10.0e-3)?, grid, zener()).kernel(kernel), velocity, Load::force(50.0))
+}
+
 /// An elastic contact under a load.
 fn elastic(shape: &dyn Geometry, modulus: f64, kernel: Option<InfluenceKernel>, load: Load) -> Result<String> {
     let grid = kernel.as_ref().map_or_else(grid, |kernel| kernel.grid().clone());
@@ -131,6 +148,9 @@ const MOTIONS: &[Scene] = &[
         sliding.at([0.01, 0.0], Load::force(1.0e-3)).map(told)
     }, "E'' >= 0"),
 ("a counter-body that creeps", || slid(builder_on(grid(), body()).counter_body(body()), 0.1, Load::force(0.1)), "Builder::counter_motion"),
+("steps over a body that recovers behind the grid",
+    || stepped(builder_on(grid(), zener()), 3.0e-3, Load::force(0.5)), "lengthen it behind the contact"),
+("steps in line contact that leave the grid too soon", || stepped_in_line(3.0e-3), "lengthen it behind the contact"),
 // elastic contacts
 ("an elastic contact on two cells", || elastic(&ball(), 4.0e6, None, Load::force(2.0e-5)), "fewer than 8 cells across"),
 ("a steep cone on an elastic body", || elastic(&Cone::new(0.8)?, 4.0e6, None, Load::approach(1.0e-3)), "check that lengths are in m"),
@@ -179,7 +199,8 @@ fn no_motion_sweep_or_fit_outside_the_model_is_silent() {
 #[test]
 fn motions_and_fits_inside_are_silent() {
     let waves = || Wavy::new(1.0e-6, 1.0e-3);
-    let inside: [(&str, Result<String>); 6] = [
+    let inside: [(&str, Result<String>); 7] = [
+        ("steps over a body that recovers on the grid", stepped_in_line(0.2e-3)),
         ("a ball on an elastic body", elastic(&ball(), 4.0e6, None, Load::force(0.5))),
         ("a ball", slid(builder_on(grid(), body()), 0.1, Load::force(0.5))),
         ("a wave", periodic(&waves().unwrap(), 48, Load::force(1.0e-2))),
