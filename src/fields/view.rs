@@ -1,6 +1,6 @@
 //! The fields of a contact on the whole grid, or on the local rows of a rank.
 
-use std::sync::OnceLock;
+use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
 use crate::equilibrium::{Ground, Held, Region};
 
@@ -13,30 +13,50 @@ pub(crate) struct Surface<'a> {
 }
 
 /// Pressure and displacement on the whole grid, where only a region is computed; on the local rows, where ranks share
-/// them out.
-#[derive(Debug, Clone, Default)]
+/// them out. Computed at the first call after a step.
+#[derive(Debug, Default)]
 pub(crate) struct View {
-    pressure: Vec<f64>,
-    /// Computed at the first call.
+    pressure: OnceLock<Vec<f64>>,
+    /// Room for the pressure.
+    room: Mutex<Vec<f64>>,
     displacement: OnceLock<Vec<f64>>,
 }
 
+impl Clone for View {
+    fn clone(&self) -> View {
+        let room = Mutex::new(Vec::with_capacity(self.room().capacity()));
+        View { pressure: self.pressure.clone(), room, displacement: self.displacement.clone() }
+    }
+}
+
 impl View {
-    /// Updates the fields to what is `held`.
+    fn room(&self) -> MutexGuard<'_, Vec<f64>> {
+        self.room.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Drops the fields of what was `held` before.
     pub(crate) fn refresh(&mut self, held: &Held) {
-        let Held { region, current, .. } = held;
         self.displacement.take();
-        if region.is_shown() {
-            self.pressure = Vec::new();
+        let last = self.pressure.take();
+        let room = self.room.get_mut().unwrap_or_else(PoisonError::into_inner);
+        last.into_iter().for_each(|last| *room = last);
+        room.clear();
+        if held.region.is_shown() {
+            *room = Vec::new();
         } else {
-            self.pressure.clear();
-            self.pressure.resize(region.shown_len(), 0.0);
-            region.show(&current.solution.pressure, &mut self.pressure);
+            room.reserve_exact(held.region.shown_len());
         }
     }
 
     pub(super) fn pressure<'a>(&'a self, held: &'a Held) -> &'a [f64] {
-        if held.region.is_shown() { &held.current.solution.pressure } else { &self.pressure }
+        let Held { region, current, .. } = held;
+        let whole = || {
+            let mut whole = std::mem::take(&mut *self.room());
+            whole.resize(region.shown_len(), 0.0);
+            region.show(&current.solution.pressure, &mut whole);
+            whole
+        };
+        if region.is_shown() { &current.solution.pressure } else { self.pressure.get_or_init(whole) }
     }
 
     pub(super) fn displacement<'a>(&'a self, ground: &Ground, region: &Region, surface: Surface<'a>) -> &'a [f64] {

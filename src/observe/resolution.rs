@@ -59,9 +59,10 @@ impl Outline<'_> {
             let low = row.iter().position(|p| *p > 0.0)?;
             Some([low, row.iter().rposition(|p| *p > 0.0).map_or(n2, |last| last + 1)])
         };
-        let ([mut cells, mut across, mut along], mut above, mut extent) = ([0; 3], None, None);
+        let ([mut cells, mut across, mut along], mut extent) = ([0; 3], None);
+        let (mut above, mut above_is_whole) = (None, false);
         for (i, row) in pressure.chunks_exact(n2).enumerate() {
-            let own = bounds(row);
+            let (own, mut is_whole) = (bounds(row), false);
             if let Some([low, high]) = own {
                 let inner = &row[low..high];
                 let count = inner.iter().filter(|p| **p > 0.0).count();
@@ -70,7 +71,8 @@ impl Outline<'_> {
                 cells += count;
                 along += usize::from(left) + usize::from(after);
                 // a row without holes has no other sides
-                along += if count == high - low { 0 } else { differ(inner, &inner[1..]) };
+                is_whole = count == high - low;
+                along += if is_whole { 0 } else { differ(inner, &inner[1..]) };
                 across += if first + i == 0 && down.open[0] { count } else { 0 };
                 across += if first + i + 1 == n1 && down.open[1] { count } else { 0 };
                 let row = Extent { low: [i, low], high: [i, high - 1] };
@@ -79,9 +81,15 @@ impl Outline<'_> {
             if i % band > 0
                 && let Some([low, high]) = joined(own, above)
             {
-                across += differ(&row[low..high], &pressure[(i - 1) * n2..][low..high]);
+                across += match (own, above) {
+                    // rows without holes that lie side by side differ at their ends
+                    (Some([a, b]), Some([c, d])) if is_whole && above_is_whole && a.max(c) < b.min(d) => {
+                        a.abs_diff(c) + b.abs_diff(d)
+                    }
+                    _ => differ(&row[low..high], &pressure[(i - 1) * n2..][low..high]),
+                };
             }
-            above = own;
+            (above, above_is_whole) = (own, is_whole);
         }
         if down.joined && self.is_one_band() && !pressure.is_empty() {
             across += differ(&pressure[..n2], &pressure[(n1 - 1) * n2..]);

@@ -27,11 +27,10 @@ const LATE: f64 = 64.0;
 /// Limits of the ratio of a step to the one before.
 const MAX_GROWTH: f64 = 4.0;
 const MIN_GROWTH: f64 = 0.1;
-/// Share of the tolerance that the error of a step aims at: errors of several steps add up, more so under given forces.
-const AIM: f64 = 0.15;
-const AIM_OF_FORCE: f64 = 0.1;
+/// Share of the tolerance that the error of a step aims at: errors of several steps add up.
+const AIM: f64 = 0.08;
 /// Further part of the aim for bodies without elastic response: nothing brings their level back.
-const AIM_OF_RATES: f64 = 0.25;
+const AIM_OF_RATES: f64 = 0.2;
 /// A step may have so many times the error that it aims at.
 const ALLOWED: f64 = 3.0;
 /// Order of a corrected step, by which its length is chosen.
@@ -223,8 +222,7 @@ impl StatesControl {
         // imprints need the short steps that come of rejections where nothing yields
         let yields = contact.levels.has_dashpot() || !matches!(load_at(history, stop)?, Load::Approach { .. });
         let longest = if yields { contact.levels.longest_growth() } else { MAX_GROWTH };
-        let of_load = if self.record.by_force { AIM_OF_FORCE } else { AIM };
-        let aim = if contact.levels.has_dashpot() { AIM_OF_RATES } else { 1.0 } * of_load * tolerance;
+        let aim = if contact.levels.has_dashpot() { AIM_OF_RATES } else { 1.0 } * AIM * tolerance;
         let mut last: Option<(f64, f64)> = None;
         loop {
             if is_late {

@@ -8,6 +8,7 @@ mod equations;
 mod few_cells;
 mod hertz;
 mod layers;
+mod literal;
 mod mesh_error;
 mod oscillation;
 mod paper_figures;
