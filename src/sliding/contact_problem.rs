@@ -18,7 +18,7 @@ use crate::solver::{Freedom, Gram, ModeCoefficients, Modes, RigidMotion, dot};
 const MOST_SETS: usize = 60;
 /// Until the set stands, its residual is brought down to this part of the first one.
 const ROUGHLY: f64 = 3e-2;
-/// A cell joins for no less penetration than so many root mean squares of the residual.
+/// A cell joins for no less penetration than so many root mean squares of the residual, or than it may have.
 const CERTAIN: f64 = 3.0;
 /// One of so many cells is many.
 const MANY: usize = 4;
@@ -26,8 +26,6 @@ const MANY: usize = 4;
 const CYCLES: usize = 3;
 /// The part of the lowest cells that a first set takes.
 const FIRST_PART: f64 = 0.3;
-/// Penetration outside of the contact may exceed the root mean square of the residual so many times.
-const SLACK: f64 = 10.0;
 /// The residual may exceed the tolerance so many times: it was brought down to it before the displacement was
 /// computed anew.
 const BELOW: f64 = 1.5;
@@ -194,7 +192,7 @@ impl Problem<'_> {
             let height = |k: usize| found.displacement[k] + gap[k] - found.motion.at(grid.center(k / n2, k % n2));
             let most = p.iter().fold(0.0_f64, |most, p| most.max(p.abs()));
             let pulls = p.iter().zip(&balance.set).map(|(p, k)| (*p, *k)).filter(|(p, _)| *p < -ROUNDING * most);
-            let deep = -(SLACK * allowed).max(CERTAIN * left);
+            let deep = -CERTAIN * allowed.max(left);
             let outside = (0..cells).filter(|&k| !pressed[k]).map(|k| (height(k), k));
             let mut changes: [Vec<(f64, usize)>; 2] = [pulls.collect(), outside.filter(|(h, _)| *h < deep).collect()];
             // until the set stands, cells in doubt leave only if no other joins, or if many do: else they come back

@@ -283,10 +283,16 @@ impl Bodies {
             };
             let far = |x: f64| x.hypot(y) > 1e3 * d.max(side);
             let area = d * side / PI;
+            // with the second moments of the cell: the history of fast motions lies far away
+            let from_afar = |x: f64| {
+                let r = x.hypot(y);
+                let moments = d * d * (2.0 * x * x - y * y) + side * side * (2.0 * y * y - x * x);
+                area / r * (1.0 + moments / r / r / r / r / 24.0)
+            };
             let kernel = Kernel {
                 half: 0.5 * d,
                 aside: (y - 0.5 * side).max(0.0),
-                value: &|x| if far(x) { area / x.hypot(y) } else { love([x, y], [d, side]) },
+                value: &|x| if far(x) { from_afar(x) } else { love([x, y], [d, side]) },
                 slope: &|x| {
                     let of = |x: f64, y: f64| (y / x.abs().max(1e-300)).asinh();
                     if far(x) { -area * x / x.hypot(y).powi(3) } else { corners(x, &of) }
