@@ -24,9 +24,11 @@ const FIRST_LEVELS: i32 = 5;
 const RATIO: f64 = 8.0;
 /// Number of even parts of a run at which its load is sampled.
 const PARTS: u32 = 512;
-/// Part of the accuracy that the solver of an elastic body may leave, and what steps and the curve may.
+/// Parts of the accuracy that the solver of an elastic body may leave, steps and the curve may, and the change of the
+/// level by the contacts of a field; the rest is for its levels.
 const OF_SOLVER: f64 = 1e-2;
-const OF_RUN: f64 = 0.5;
+const OF_RUN: f64 = 0.3;
+const OF_CHANGE: f64 = 0.15;
 /// Greatest number of contacts that are added to the curve for a field, and times that the field is found anew.
 const MOST_ADDED: usize = 64;
 const MOST_ATTEMPTS: u32 = 12;
@@ -215,14 +217,16 @@ impl Beside {
         for attempt in 1.. {
             let (mut found, mut left) = self.settled(history, (time, after), &mut most_added)?;
             let (profile, size) = (found.profile(), found.size());
-            let superposition = self.contacts.superpose(&[(&profile, size)], (accuracy - left).max(0.5 * accuracy))?;
+            let of_change = if self.by_force { 0.0 } else { OF_CHANGE };
+            let rest = (1.0 - OF_SOLVER - of_change).mul_add(accuracy, -left).max(0.5 * accuracy);
+            let superposition = self.contacts.superpose(&[(&profile, size)], rest)?;
             let mut is_settled = true;
             if !self.by_force {
                 // the contact at the level of the old curve is on the new one
                 superposition.solved.iter().for_each(|solved| self.add(solved));
                 self.repeated = self.repeated.on(self.curve_through(&self.rows)?);
                 let change = found.distance(&mut self.repeated.at(history, time, after)?)?;
-                is_settled = change <= OF_RUN * accuracy || attempt == MOST_ATTEMPTS;
+                is_settled = change <= OF_CHANGE * accuracy || attempt == MOST_ATTEMPTS;
                 left += change;
             }
             if is_settled {

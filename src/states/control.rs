@@ -27,8 +27,9 @@ const LATE: f64 = 64.0;
 /// Limits of the ratio of a step to the one before.
 const MAX_GROWTH: f64 = 4.0;
 const MIN_GROWTH: f64 = 0.1;
-/// Share of the tolerance that the error of a step aims at: errors of several steps add up.
+/// Share of the tolerance that the error of a step aims at: errors of several steps add up, and over taps.
 const AIM: f64 = 0.08;
+const AIM_OF_FORCE: f64 = 0.1;
 /// Further part of the aim for bodies without elastic response: nothing brings their level back.
 const AIM_OF_RATES: f64 = 0.2;
 /// A step may have so many times the error that it aims at.
@@ -222,7 +223,8 @@ impl StatesControl {
         // imprints need the short steps that come of rejections where nothing yields
         let yields = contact.levels.has_dashpot() || !matches!(load_at(history, stop)?, Load::Approach { .. });
         let longest = if yields { contact.levels.longest_growth() } else { MAX_GROWTH };
-        let aim = if contact.levels.has_dashpot() { AIM_OF_RATES } else { 1.0 } * AIM * tolerance;
+        let of_load = if self.record.by_force { AIM_OF_FORCE } else { AIM };
+        let aim = if contact.levels.has_dashpot() { AIM_OF_RATES } else { 1.0 } * of_load * tolerance;
         let mut last: Option<(f64, f64)> = None;
         loop {
             if is_late {

@@ -204,12 +204,15 @@ impl Bodies {
     fn response(&self, q: f64, omega: f64) -> Complex64 {
         let t = q * self.thickness;
         let one = Complex64::ONE;
+        // Burmister's (1 + 4tθκ − λκθ²) / (1 − (λ + κ(1 + 4t²)) θ + λκθ²), θ = e^(−2t), as sums of positive numbers: a stiff
+        // layer leaves no digits of the denominator
         let bonded = |mu: Complex64| {
             let [k1, k2] = [3.0 - 4.0 * self.nu, 3.0 - 4.0 * self.base_nu];
-            let (kappa, lambda) = ((mu - 1.0) / (mu + k1), (mu * k2 - k1) / (one + mu * k2));
-            let theta = (-2.0 * t).exp();
-            (one + 4.0 * t * theta * kappa - lambda * kappa * theta * theta)
-                / (one - (lambda + kappa * (1.0 + 4.0 * t * t)) * theta + lambda * kappa * theta * theta)
+            let (kappa, a, b) = ((mu - 1.0) / (mu + k1), (1.0 + k1) / (one + mu * k2), (1.0 + k1) / (mu + k1));
+            let (theta, less) = ((-2.0 * t).exp(), -(-2.0 * t).exp_m1());
+            let bends = theta * 4.0 * sinh_less(t) * (t.sinh() + t);
+            let top = -(-4.0 * t).exp_m1() + theta * theta * (a + b - a * b) + 4.0 * t * theta * kappa;
+            top / (bends + theta * less * (a + b) + a * b * theta * theta + 4.0 * t * t * theta * b)
         };
         match &self.base {
             _ if t > 60.0 => one,
@@ -318,7 +321,8 @@ impl Bodies {
         let reach = self.longest(axis, speed);
         let last = 20.0 / self.thickness;
         let mut rings: Vec<(f64, f64)> = Vec::new();
-        let mut end = 1e-3 / reach;
+        // stiff layers on soft bases change within waves much longer than all
+        let mut end = 1e-9 / reach;
         rings.extend(points(0.0, end, 1));
         while end < last {
             let next = (2.0 * end).min(end + 6.0 / (n as f64 * d)).min(last);
@@ -631,4 +635,18 @@ pub fn check_bessel_functions() {
     near(k0(2.0 - 1e-12), k0(2.0 + 1e-12) + 2e-12 * k1(2.0));
     near(k1(2.0 - 1e-12), waves_of(2.0 - 1e-12, 1));
     near(k0_to(2.0), 0.5 * PI - waves_of(2.0, -1));
+}
+
+/// sinh t − t.
+fn sinh_less(t: f64) -> f64 {
+    if t > 1.0 {
+        return t.sinh() - t;
+    }
+    let mut term = t * t * t / 6.0;
+    let mut sum = term;
+    for k in 2..12 {
+        term *= t * t / f64::from(2 * k * (2 * k + 1));
+        sum += term;
+    }
+    sum
 }
