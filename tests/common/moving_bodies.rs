@@ -420,6 +420,8 @@ impl Bodies {
             aside: 0.0,
             value: &|x| strip(x, d, kappa, datum),
             slope: &|x| match kappa {
+                // far away the ratio has no digits left of its difference from 1
+                0.0 if x.abs() > 4.0 * half => -FRAC_2_PI * x.signum() * (2.0 * half / (x.abs() - half)).ln_1p(),
                 0.0 => -FRAC_2_PI * ((x + half).abs().max(1e-300) / (x - half).abs().max(1e-300)).ln(),
                 _ => FRAC_2_PI * (k0(kappa * (x + half).abs()) - k0(kappa * (x - half).abs())),
             },
@@ -437,7 +439,7 @@ impl Bodies {
         // of the half-space less the load buried in it nothing is left far away
         let less = Kernel {
             value: &|x| (kernel.value)(x) - buried(x, z, d, datum),
-            slope: &|x| (kernel.slope)(x) + FRAC_2_PI * ((x + half).hypot(z) / (x - half).hypot(z)).ln(),
+            slope: &|x| (kernel.slope)(x) + slope_below(x, half, z),
             curvature: &|x| {
                 let part = |x: f64| x / (x * x + z * z);
                 (kernel.curvature)(x) + FRAC_2_PI * (part(x + half) - part(x - half))
@@ -448,7 +450,7 @@ impl Bodies {
             half,
             aside: z,
             value: &|x| buried(x, z, d, datum),
-            slope: &|x| -FRAC_2_PI * ((x + half).hypot(z) / (x - half).hypot(z)).ln(),
+            slope: &|x| -slope_below(x, half, z),
             curvature: &|x| {
                 let part = |x: f64| x / (x * x + z * z);
                 FRAC_2_PI * (part(x - half) - part(x + half))
@@ -555,6 +557,12 @@ const DEPTH: f64 = 1.3;
 fn buried(x: f64, z: f64, side: f64, datum: f64) -> f64 {
     let own = |s: f64| -((x + s).hypot(z) / datum).ln() * 2.0 / PI;
     points(-0.5 * side, 0.5 * side, if x.hypot(z) > 4.0 * side { 1 } else { 4 }).map(|(s, w)| w * own(s)).sum()
+}
+
+/// (2/π) ln of the ratio of the distances from both ends of a side, at a depth.
+fn slope_below(x: f64, half: f64, z: f64) -> f64 {
+    let near = x.abs() - half;
+    0.5 * FRAC_2_PI * x.signum() * (4.0 * x.abs() * half / (near * near + z * z)).ln_1p()
 }
 
 /// (2/π) ∫ K0(κ |x − s|) ds over a side, or of −ln(|x − s|/D).
