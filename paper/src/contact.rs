@@ -82,11 +82,13 @@ pub fn solve(
         contact.iter().for_each(|&k| state.pressure[k] = (before[k] - length * direction[k]).max(0.0));
         // Eq. 2: cells that overlap without pressure join
         let joined: Vec<usize> = (0..cells).filter(|&k| state.pressure[k] == 0.0 && h[k] < 0.0).collect();
-        joined.iter().for_each(|&k| state.pressure[k] = -length.abs() * h[k]);
+        let mean = load.force / area / contact.len() as f64;
+        let step = length.abs();
+        joined.iter().for_each(|&k| state.pressure[k] = if step > 0.0 { -step * h[k] } else { mean });
         conjugate = if joined.is_empty() { 1.0 } else { 0.0 };
         balance(&mut state.pressure, &grid, load, area)?;
         let change: f64 = state.pressure.iter().zip(&before).map(|(now, before)| (now - before).abs()).sum();
-        if change <= tolerance * before.iter().sum::<f64>() {
+        if joined.is_empty() && change <= tolerance * before.iter().sum::<f64>() {
             return Some(state);
         }
     }

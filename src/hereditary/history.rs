@@ -252,6 +252,11 @@ impl History {
         }
     }
 
+    /// Whether the sources of a moving frame have reached the edge behind a motion.
+    pub(crate) fn has_left(&self, axis: usize, is_forward: bool) -> bool {
+        self.frame.as_ref().is_some_and(|frame| frame.has_left(axis, is_forward))
+    }
+
     /// u − u_old, by which a free displacement recedes in the step predicted last: calls `take` with it for each cell
     /// that is `wanted`. Only the exponential rule has it.
     pub(crate) fn recovery(&self, wanted: impl Fn(usize) -> bool, mut take: impl FnMut(usize, f64)) {

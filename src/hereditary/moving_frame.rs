@@ -28,6 +28,15 @@ pub(crate) struct MovingFrame {
 clone_by_fields! { MovingFrame { cells, periodic, source, remainder, scratch } }
 
 impl MovingFrame {
+    /// Whether the sources have reached the edge behind a motion along an axis.
+    pub(super) fn has_left(&self, axis: usize, is_forward: bool) -> bool {
+        let [n1, n2] = self.cells;
+        let (count, unit) = if axis == 0 { (n1, n2) } else { (n2, 1) };
+        let edge = if is_forward { 0 } else { count - 1 };
+        let is_behind = |k: &usize| k / unit % count == edge;
+        (0..self.source.now.len()).filter(is_behind).any(|k| self.source.now[k] != 0.0)
+    }
+
     /// The undisturbed past, on no cells yet; both of its fields are like `field`.
     pub(crate) fn new(field: RememberedField, periodic: [bool; 2]) -> MovingFrame {
         MovingFrame { cells: [0; 2], periodic, remainder: field.clone(), source: field, scratch: Vec::new() }

@@ -111,9 +111,10 @@ impl Contacts {
             let mut solved = Vec::with_capacity(levels.len());
             for (k, level) in levels.iter().enumerate() {
                 // the last one is of this field alone
-                solved.push(match last.take().filter(|_| k + 1 == levels.len()) {
+                let is_last = k + 1 == levels.len();
+                solved.push(match last.take_if(|last| is_last && last.level == *level) {
                     Some(last) => last,
-                    None if k + 1 == levels.len() => self.solve(*level)?,
+                    None if is_last => self.solve(*level)?,
                     None => self.keep(*level)?,
                 });
             }

@@ -47,6 +47,8 @@ struct Step {
 struct Finer {
     contact: Box<ViscoelasticContact>,
     followed: usize,
+    /// Whether a step has failed: it stays where it was.
+    failed: bool,
 }
 
 impl Refined {
@@ -109,12 +111,16 @@ impl Refined {
                 break;
             }
             if finer.len() == k {
-                finer.push(Finer { contact: self.origin.clone(), followed: 0 });
+                finer.push(Finer { contact: self.origin.clone(), followed: 0, failed: false });
             }
-            match self.advance(&mut finer[k], 2 << k, history) {
+            let own = &mut finer[k];
+            let advanced = if own.failed { Ok(()) } else { self.advance(own, 2 << k, history) };
+            own.failed |= advanced.is_err();
+            match advanced {
+                Err(error) if !matches!(error, Error::Step(_)) => return Err(error),
                 // the fields of longer steps stay
-                Err(Error::Step(_)) => break,
-                other => other?,
+                _ if own.failed => break,
+                _ => {}
             }
             let contact = &finer[k].contact;
             error = self.error(contact, k.checked_sub(1).map_or(run, |before| &finer[before].contact));

@@ -18,6 +18,8 @@ const FIRST_PARTS: u32 = 2;
 const MOST_HALVED: usize = 8000;
 /// Steps twice as long err by so many times more, the order being 2.
 const OF_LONGER: f64 = 3.0;
+/// Times that steps are halved where it is not known whether bodies touch.
+const MOST_UNKNOWN: u32 = 2;
 /// Parts of the levels whose mean tractions are compared.
 const PARTS_COMPARED: usize = 16;
 /// The shortest step, over the time since the start.
@@ -99,13 +101,16 @@ impl Repeated {
         at: (f64, bool),
         allowed: f64,
     ) -> Result<(Found, f64)> {
-        loop {
+        for attempt in 1.. {
             let mut found = self.at(history, at.0, at.1)?;
             let error = found.distance(&mut self.by_longer_steps(history, at)?)? / OF_LONGER;
-            if error <= allowed || !self.halve() {
+            // bodies that just touch stay apart by nothing in steps of any length
+            let is_unknown = error.is_infinite() && attempt > MOST_UNKNOWN;
+            if error <= allowed || is_unknown || !self.halve() {
                 return Ok((found, error));
             }
         }
+        unreachable!("steps are not halved without end")
     }
 
     /// Halves its steps; false where they are too many already.
@@ -212,7 +217,8 @@ impl Found {
         }
         let (own, size) = (self.profile(), self.size());
         let off = own.distance(&other.profile(), &own.cuts(PARTS_COMPARED));
-        Ok(if size > 0.0 { off / size } else { 0.0 })
+        // where nothing has pressed yet, one of them may have touched
+        Ok(if off == 0.0 { 0.0 } else { off / size })
     }
 }
 

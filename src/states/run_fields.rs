@@ -52,7 +52,8 @@ impl<'a> Run<'a> {
     /// disturbed before the run begins, and where an elastic contact shrinks as its load grows, 12 steps graded by
     /// 0.7 end before each of the times. A run beside in steps twice as long tells the error, for half as much work
     /// again and the memory of two contacts. Where it is more than was asked, the steps so far are taken once more, in
-    /// halves, until the field changes by less. There is no estimate once a step of the run beside has failed.
+    /// halves, until the field changes by less: at most four times, each for twice the work of the one before and the
+    /// memory of a contact. There is no estimate once a step of the run beside has failed.
     ///
     /// At a jump of the load both the step that ends there and the jump have a sample: the field before it, and the
     /// field after it.

@@ -39,13 +39,14 @@ impl Wake<'_> {
     }
 
     /// At a distance s behind it a load W leaves the sources Σ C_k W e^(−s/l_k)/l_k ds, l_k = v λ_k, as far back as the
-    /// indenter has been. Those beyond the edge, at D behind the end of the contact, would lift the contact and tilt
+    /// indenter came at this speed since it touched. Those beyond the edge, at D behind the end of the contact, would lift the contact and tilt
     /// it. As their influence falls as 1/s, and its slope as 1/s², the exponential integrals E1(D/l_k) and E2(D/l_k)
     /// result; in line contact, of the slope 1/s, E1 for the tilt. Upper bounds of elementary functions take their
     /// place. From the end of the contact on, at most the whole load counts.
     fn along(self, axis: usize) -> f64 {
         let Scene { ground, creep, .. } = self.scene;
-        let (kernel, grid, State { held, clock, .. }) = (&ground.kernel, &ground.grid, &self.computation.state);
+        let (kernel, grid, State { held, clock, history, .. }) =
+            (&ground.kernel, &ground.grid, &self.computation.state);
         let (periodic, side, count) = (kernel.periodic_axes(), grid.spacing()[axis], grid.cells()[axis]);
         let Some(creep) = creep.as_ref().filter(|_| !periodic[axis] && clock.last_dt > 0.0) else { return 0.0 };
         let line = periodic[1 - axis];
@@ -53,7 +54,7 @@ impl Wake<'_> {
         let speed = side * self.stride[axis].unsigned_abs() as f64 / clock.last_dt;
         let distance = (cells as f64 + 0.5) * side;
         let beyond = speed * clock.age() - distance;
-        if beyond <= 0.0 {
+        if beyond <= 0.0 || !history.has_left(axis, self.stride[axis] > 0) {
             return 0.0;
         }
         // displacement at a distance under a unit force, and how strongly its slope falls: a layer's base may be softer
@@ -69,7 +70,7 @@ impl Wake<'_> {
         let far = count.saturating_sub(2).max(1);
         let near = cells.clamp(1, far);
         let (strength, lift) = (strength(near).max(strength(far)), influence(near));
-        let force = held.current.sum * grid.cell_area();
+        let force = held.current.sum * held.region.cell_area();
         let flow = OF_FLOW * clock.age();
         let mut change = Change::default();
         for (compliance, time) in creep.terms().iter().copied().chain([(creep.fluidity() * flow, flow)]) {
