@@ -37,9 +37,10 @@ impl View {
     /// Drops the fields of what was `held` before.
     pub(crate) fn refresh(&mut self, held: &Held) {
         self.displacement.take();
-        let last = self.pressure.take();
         let room = self.room.get_mut().unwrap_or_else(PoisonError::into_inner);
-        last.into_iter().for_each(|last| *room = last);
+        if let Some(last) = self.pressure.take() {
+            *room = last;
+        }
         room.clear();
         if held.region.is_shown() {
             *room = Vec::new();

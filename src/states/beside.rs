@@ -102,7 +102,7 @@ impl Beside {
         let mut beside = Beside { repeated, contacts, rows, by_force, rest };
         let mut below: Option<Solved> = None;
         for k in (0..FIRST_LEVELS).rev() {
-            let next = beside.contacts.keep(top * RATIO.powi(-k))?;
+            let next = beside.contacts.solve(top * RATIO.powi(-k))?;
             below.iter().try_for_each(|below| beside.contacts.check(below, &next))?;
             beside.add(&next);
             below = Some(next);

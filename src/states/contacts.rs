@@ -65,7 +65,7 @@ impl Contacts {
         Ok(Solved { level, motion, area, pressure: Pressed::new(fields.pressure()) })
     }
 
-    /// Solves an elastic contact and keeps it. Nowhere may the pressure fall while the load grows.
+    /// Solves an elastic contact and keeps it.
     pub(super) fn keep(&mut self, level: f64) -> Result<Solved> {
         let solved = self.solve(level)?;
         let at = self.kept.partition_point(|kept| kept.level < level);
@@ -80,11 +80,12 @@ impl Contacts {
         self.kept.clear();
     }
 
+    /// Nowhere may the pressure fall while the load grows.
     pub(super) fn check(&self, below: &Solved, above: &Solved) -> Result<()> {
         below.pressure.check_growth(&above.pressure, [below.level, above.level], self.allowed_fall)
     }
 
-    /// Levels for a profile, the kept ones where these are near.
+    /// Levels for profiles, the kept ones where these are near.
     fn levels(&self, profiles: &[Weighted<'_>], parts: usize) -> Vec<f64> {
         let mut wanted: Vec<f64> = profiles.iter().flat_map(|(profile, _)| profile.cuts(parts)).collect();
         wanted.sort_by(f64::total_cmp);
@@ -140,11 +141,11 @@ impl Contacts {
 
     /// Σ w (p_e(l_i) − p_e(l_i−1)) = Σ (w_i − w_i+1) p_e(l_i), on every so many of the levels, the last one among them.
     fn field(&self, profile: &Profile, solved: &[Solved], every: usize) -> Vec<f64> {
-        let picked: Vec<&Solved> = solved.iter().rev().step_by(every).collect::<Vec<_>>().into_iter().rev().collect();
-        let levels: Vec<f64> = picked.iter().map(|solved| solved.level).collect();
+        let picked = || solved.iter().skip(solved.len().saturating_sub(1) % every).step_by(every);
+        let levels: Vec<f64> = picked().map(|solved| solved.level).collect();
         let shares = profile.means(&levels);
         let mut field = vec![0.0; self.elastic.fields().grid().len()];
-        for (k, solved) in picked.iter().enumerate() {
+        for (k, solved) in picked().enumerate() {
             solved.pressure.add_to(shares[k] - shares.get(k + 1).unwrap_or(&0.0), &mut field);
         }
         field

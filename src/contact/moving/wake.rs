@@ -21,15 +21,6 @@ pub(in crate::contact) struct Wake<'a> {
     pub(in crate::contact) stride: [isize; 2],
 }
 
-/// What a change of the displacement does to approach and lateral force.
-#[derive(Debug, Clone, Copy, Default)]
-struct Change {
-    /// Σ p |δu| \[Pa m\].
-    lift: f64,
-    /// Σ p |∂δu/∂x| along the motion \[Pa\].
-    slope: f64,
-}
-
 impl Wake<'_> {
     /// The part of approach or lateral force by which the traces that have left the grid could change it, where that is
     /// to be told: a bound that is 1.2 to 3 times what is missing where v λ is longer than the grid.
@@ -39,10 +30,10 @@ impl Wake<'_> {
     }
 
     /// At a distance s behind it a load W leaves the sources Σ C_k W e^(−s/l_k)/l_k ds, l_k = v λ_k, as far back as the
-    /// indenter came at this speed since it touched. Those beyond the edge, at D behind the end of the contact, would lift the contact and tilt
-    /// it. As their influence falls as 1/s, and its slope as 1/s², the exponential integrals E1(D/l_k) and E2(D/l_k)
-    /// result; in line contact, of the slope 1/s, E1 for the tilt. Upper bounds of elementary functions take their
-    /// place. From the end of the contact on, at most the whole load counts.
+    /// indenter came at this speed since it touched. Those beyond the edge, at D behind the end of the contact, would
+    /// lift the contact and tilt it. As their influence falls as 1/s, and its slope as 1/s², the exponential integrals
+    /// E1(D/l_k) and E2(D/l_k) result; in line contact, of the slope 1/s, E1 for the tilt. Upper bounds of elementary
+    /// functions take their place. From the end of the contact on, at most the whole load counts.
     fn along(self, axis: usize) -> f64 {
         let Scene { ground, creep, .. } = self.scene;
         let (kernel, grid, State { held, clock, history, .. }) =
@@ -72,7 +63,8 @@ impl Wake<'_> {
         let (strength, lift) = (strength(near).max(strength(far)), influence(near));
         let force = held.current.sum * held.region.cell_area();
         let flow = OF_FLOW * clock.age();
-        let mut change = Change::default();
+        // Σ p |δu|, and Σ p |∂δu/∂x| along the motion
+        let (mut lifts, mut slopes) = (0.0, 0.0);
         for (compliance, time) in creep.terms().iter().copied().chain([(creep.fluidity() * flow, flow)]) {
             let l = speed * time;
             let weight = -(-beyond / l).exp_m1() * compliance * force * held.current.sum;
@@ -83,12 +75,12 @@ impl Wake<'_> {
             } else {
                 (strength / l * e1, strength * decay / (distance * (l + distance)))
             };
-            change.lift += weight * lifted;
-            change.slope += weight * tilted;
+            lifts += weight * lifted;
+            slopes += weight * tilted;
         }
         let share = |part: f64, whole: f64| if part == 0.0 { 0.0 } else { part / whole };
         let approach = held.current.motions[0].approach - held.indenter.gap().datum;
-        share(change.lift, held.current.sum * approach.abs()).max(share(change.slope, self.slope(grid, axis).abs()))
+        share(lifts, held.current.sum * approach.abs()).max(share(slopes, self.slope(grid, axis).abs()))
     }
 
     /// Σ p ∂u/∂x along an axis, which is the lateral force over the area of a cell.
