@@ -55,7 +55,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
             6 => steps_in_time(cells),
             _ => pressure_history(figure, cells),
         }?;
-        if figure >= 4 {
+        if figure == 4 || figure == 5 {
             let few: Vec<&FewSteps> = few.iter().filter(|few| few.figure == figure).collect();
             picture = Picture::beside(&[picture, few_steps(&few, cells)?])?;
         }
@@ -193,16 +193,20 @@ fn pressure_history(figure: u32, cells: usize) -> Drawn {
 /// Figure 6: profiles at 2τ for several numbers of steps, by the paper's rule and by the default one.
 fn steps_in_time(cells: usize) -> Drawn {
     let scene = StepLoadedSphere::maxwell();
-    let (units, exact, grid) = (hertz(&scene)?, scene.reference()?, scene.grid(cells)?);
+    let (units, exact) = (hertz(&scene)?, scene.reference()?);
     let studies = figure_6(cells)?;
     println!("Figure 6, errors in time at t = 2 τ, of the whole pressure (L1) and in the middle");
     println!("| steps | paper's rule, L1 | p(0) | default rule, L1 | p(0) |\n|---|---|---|---|---|");
     for (which, steps) in STEP_COUNTS.iter().enumerate() {
-        let [[paper, paper_middle], [own, own_middle]] = [0, 1].map(|rule: usize| studies[rule].errors[which]);
-        println!("| {steps} | {paper:.1e} | {paper_middle:.1e} | {own:.1e} | {own_middle:.1e} |");
+        let columns = studies.iter().map(|study| match study.errors.get(which) {
+            Some([l1, middle]) => format!(" {l1:.1e} | {middle:.1e} |"),
+            None => " – | – |".to_owned(),
+        });
+        println!("| {steps} |{}", columns.collect::<String>());
     }
     let panel = |study: &TimeStudy, name: &str| -> Result<Picture> {
         let title = format!("Figure 6: Maxwell body, t = 2 τ, {name}");
+        let grid = scene.grid(study.cells)?;
         let mut chart = Chart::new(title, "r / a_H", "p / p_H", Legend::LowerLeft);
         let runs = study.pressures.iter().zip(STEP_COUNTS).zip(&study.errors).zip(COLORS);
         for (((pressure, steps), [error, _]), color) in runs {
@@ -240,8 +244,7 @@ fn figure_6_as_a_study(args: &Args) -> Result<(), Box<dyn Error>> {
 fn few_steps(few: &[&FewSteps], cells: usize) -> Result<Picture> {
     let scene = if few[0].figure == 5 { StepLoadedSphere::zener() } else { StepLoadedSphere::maxwell() };
     let (units, exact, grid) = (hertz(&scene)?, scene.reference()?, scene.grid(cells)?);
-    let rule = if few[0].figure == 6 { "the paper's rule" } else { "the default rule" };
-    let title = format!("t = 2 τ in few steps, {rule}, and with the field asked for");
+    let title = "t = 2 τ in few steps, and with the field asked for";
     let mut chart = Chart::new(title, "r / a_H", "p / p_H", Legend::LowerLeft);
     let half = |pressure: &[f64]| -> Vec<(f64, f64)> {
         along_x1(&grid, pressure, units).into_iter().filter(|&(x, p)| x > 0.0 && p > 0.0).collect()

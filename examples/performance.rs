@@ -1,5 +1,5 @@
 //! Cost of a step: the paper's scene on several meshes, computed in every way there is, in units of one convolution
-//! on the whole grid and of the paper's own algorithm. Writes a table (CSV) and a picture.
+//! on the whole grid. Writes a table (CSV) and a picture.
 //!
 //! `RAYON_NUM_THREADS=1 cargo run --release -p viscocontact --features data,plot --example performance`
 //! (about a minute), or with `-- --cells 64` (a second)
@@ -67,8 +67,6 @@ fn ways(tolerance: f64) -> Vec<(&'static str, Settings, f64)> {
         ("whole grid", whole, 1.0),
         ("contact on 1/16, window", settings.with_symmetry(false), wide),
         ("contact on 1/16, whole grid", whole, wide),
-        ("Polonsky–Keer, whole grid", whole.with_solver(Solver::PolonskyKeer), 1.0),
-        ("paper", Settings::paper().with_tolerance(tolerance), 1.0),
     ]
 }
 
@@ -92,10 +90,6 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         let convolution = time_of_a_convolution(cells)?;
         for ((way, points), row) in ways.iter().zip(&mut series).zip(&mut rows) {
             progress.inc(1);
-            if way.1.solver() == Solver::PolonskyKeer && cells > args.paper_up_to {
-                *row += " – |";
-                continue;
-            }
             let cost = cost(cells, args.steps, way.1, way.2)?;
             let all = (cells * cells) as f64;
             progress.suspend(|| {
@@ -133,8 +127,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let mut chart = Chart::new("Time of a step", x, y, Legend::UpperLeft);
     chart.scale = Scale::LogLog;
     for ((way, points), color) in ways.iter().zip(series).zip(COLORS.iter().cycle()) {
-        let style = if way.0 == "paper" { Style::Dots } else { Style::LineAndDots };
-        chart.add(way.0, *color, style, points);
+        chart.add(way.0, *color, Style::LineAndDots, points);
     }
     chart.save(args.output.join("performance.png"))?;
     println!("{} holds performance.csv and performance.png", args.output.display());

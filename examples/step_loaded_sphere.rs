@@ -52,12 +52,6 @@ struct Args {
     /// Steps to the end, t = 2 tau.
     #[arg(long, default_value_t = 100)]
     steps: usize,
-    /// Time rule.
-    #[arg(long, value_enum, default_value = "exponential")]
-    rule: Rule,
-    /// Solver of the contact problem.
-    #[arg(long, value_enum, default_value = "active-set")]
-    solver: SolverName,
     /// Tolerance of the solver.
     #[arg(long, default_value_t = 1e-6)]
     tolerance: f64,
@@ -76,31 +70,9 @@ enum Model {
     Both,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-enum Rule {
-    Exponential,
-    Rectangle,
-    Backward,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum SolverName {
-    ActiveSet,
-    PolonskyKeer,
-}
-
 impl Args {
     fn settings(&self) -> Settings {
-        let time_rule = match self.rule {
-            Rule::Exponential => TimeRule::Exponential,
-            Rule::Rectangle => TimeRule::Rectangle,
-            Rule::Backward => TimeRule::Backward,
-        };
-        let solver = match self.solver {
-            SolverName::ActiveSet => Solver::ActiveSet,
-            SolverName::PolonskyKeer => Solver::PolonskyKeer,
-        };
-        Settings::default().with_tolerance(self.tolerance).with_time_rule(time_rule).with_solver(solver)
+        Settings::default().with_tolerance(self.tolerance)
     }
 
     fn scenes(&self) -> Result<Vec<StepLoadedSphere>> {
@@ -154,7 +126,6 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         run.plot_profiles(scene)?.save(file(&args.output, "profiles", scene, "png"))?;
         run.add_growth(scene, &mut growth, colors[0]);
         add_convergence(scene, args, &mut convergence, colors)?;
-        compare_with_the_paper(scene, args, &run)?;
     }
     growth.save(args.output.join("contact_radius.png"))?;
     convergence.save(args.output.join("convergence.png"))?;
@@ -333,7 +304,7 @@ impl Run {
     }
 }
 
-/// The error at t = 2τ over the number of steps, the paper's rule beside the exponential one.
+/// The error at t = 2τ over the number of steps, without the correction of past steps and with it.
 fn add_convergence(
     scene: &StepLoadedSphere,
     args: &Args,
@@ -342,7 +313,7 @@ fn add_convergence(
 ) -> Result<(), Box<dyn Error>> {
     let mut table = csv::Writer::from_path(file(&args.output, "convergence", scene, "csv"))?;
     table.write_record(["rule", "steps", "central_pressure_error", "l1_error", "approach_error"])?;
-    let rules = [("paper's rule", TimeRule::Rectangle), ("exponential rule", TimeRule::Exponential)];
+    let rules = [("linear rule", TimeRule::ExponentialLinear), ("default rule", TimeRule::Exponential)];
     let progress = bar(2 * STEP_COUNTS.iter().sum::<usize>(), format!("{} convergence", scene.name))?;
     for ((name, time_rule), color) in rules.into_iter().zip(colors) {
         let mut points = Vec::new();
@@ -359,20 +330,6 @@ fn add_convergence(
     }
     progress.finish_and_clear();
     Ok(table.flush()?)
-}
-
-/// The same scene by the paper's whole algorithm, for the cost.
-fn compare_with_the_paper(scene: &StepLoadedSphere, args: &Args, run: &Run) -> Result<(), Box<dyn Error>> {
-    let settings = Settings::paper().with_tolerance(args.tolerance);
-    let started = Instant::now();
-    let (contact, work) = scene.run(args.cells, args.steps, settings)?;
-    let (seconds, error) = (started.elapsed().as_secs_f64(), errors(&contact, &run.exact));
-    println!(
-        "the paper's algorithm (Polonsky–Keer, rectangle rule, direct sum): {work:.2} convolution equivalents a step, \
-         error of p(0) {:.1e}; {seconds:.2} s\n",
-        error.central_pressure
-    );
-    Ok(())
 }
 
 fn file(folder: &Path, name: &str, scene: &StepLoadedSphere, extension: &str) -> PathBuf {

@@ -94,8 +94,8 @@
 //! and <!-- figures memory of a line -->370<!-- end --> in a line contact; each further time adds 8 per computed cell.
 //! [`contact::Builder::memory`] returns the bytes beforehand.
 //!
-//! A step allocates nothing, except the first two of a run or under a tilting load, the first over the bodies or of several bodies, and steps of direct
-//! sums ([`contact::TimeRule::Rectangle`], [`contact::TimeRule::Backward`]), which keep a field of each step, along a path, with attraction, where a window
+//! A step allocates nothing, except the first two of a run or under a tilting load, the first over the bodies or of several bodies, and steps
+//! along a path, with attraction, where a window
 //! grows, or temperature alters the rate of creep by many decades.
 //!
 //! # Co-simulation and long runs
@@ -223,7 +223,7 @@ pub use num_complex;
 /// ```
 pub mod prelude {
     pub use crate::contact::{
-        BodyState, Builder, Contact, Edge, Frame, Settings, Snapshot, Solver, StepError, StepReport, TimeRule,
+        BodyState, Builder, Contact, Edge, Frame, Settings, Snapshot, StepError, StepReport, TimeRule,
         ViscoelasticContact, Warnings,
     };
     pub use crate::elastic::ElasticContact;

@@ -6,6 +6,7 @@ use viscocontact::Result;
 use viscocontact::analytic::Hertz;
 use viscocontact::plot::Legend;
 use viscocontact::prelude::*;
+use viscocontact_paper as paper;
 
 use crate::claim::{Checked, Outcome};
 use crate::elastic::G;
@@ -169,18 +170,31 @@ pub fn direct_sums() -> Outcome {
         })
         .sum();
 
-    // the default rule beside the backward rule, whose error falls as the step
+    // the default rule beside the source paper's own algorithm, whose error falls as the step
     let corners: Vec<_> = (0..=10).map(|k| (0.2 * f64::from(k), if k % 4 == 0 { 0.0 } else { random() })).collect();
     let history = PiecewiseLinear::new(&corners.iter().map(|&(t, force)| (t, Load::force(force))).collect::<Vec<_>>())?;
-    let run = |rule: TimeRule, steps: u32| -> Result<[f64; 2]> {
-        let mut contact = sphere(rule, 1e-8)?;
-        let mut run = contact.follow(&history, Stepping::fixed(2.0 / f64::from(steps)), 1.9);
-        while run.next_step()?.is_some() {}
-        Ok([contact.approach(), contact.fields().max_pressure()])
+    let mut contact = sphere(TimeRule::Exponential, 1e-8)?;
+    let mut run = contact.follow(&history, Stepping::fixed(0.005), 1.9);
+    while run.next_step()?.is_some() {}
+    let literally = |steps: u32| -> Result<[f64; 2]> {
+        let grid = paper::Grid { cells: 64, side: grid.spacing()[0] };
+        let square = |k: usize| grid.center(k).map(|x| x * x).iter().sum::<f64>();
+        let gap = (0..grid.len()).map(|k| square(k) / (2.0 * RADIUS)).collect();
+        let creep = |t: f64| material.contact_compliance(t);
+        let mut contact = paper::History::new(paper::Influence::new(grid), &creep, gap, 1e-9);
+        for step in 1..=steps {
+            let time = 1.9 * f64::from(step) / f64::from(steps);
+            let Load::Force { normal, .. } = history.at(time) else { unreachable!("all are forces") };
+            assert!(
+                contact.step(time, paper::Load { force: normal, at: None }),
+                "the paper's solver does not converge"
+            );
+        }
+        Ok([contact.state.approach, contact.state.pressure.iter().copied().fold(0.0, f64::max)])
     };
-    let [own, coarse, fine] =
-        [run(TimeRule::Exponential, 400)?, run(TimeRule::Backward, 400)?, run(TimeRule::Backward, 800)?];
-    let limit = |which: usize| 2.0 * fine[which] - coarse[which];
+    let [coarse, fine] = [literally(95)?, literally(190)?];
+    let (own, limit) =
+        ([contact.approach(), contact.fields().max_pressure()], |which: usize| 2.0 * fine[which] - coarse[which]);
     let rows = [
         ("K p in the middle, after any steps", potential[middle], summed, 1e-8),
         ("approach", own[0], limit(0), 1e-4),

@@ -1,4 +1,4 @@
-//! The hereditary integral of Eq. 9 to 12, and the flow chart of Figure 1.
+//! The hereditary integral of Eq. 9 and Eq. 10, as the sum of Eq. 11 with the coefficients of Eq. 12, and the flow chart of Figure 1.
 
 use crate::contact::{Load, State, solve};
 use crate::influence::Influence;

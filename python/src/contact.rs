@@ -46,13 +46,10 @@ const LONG: Duration = Duration::from_millis(10);
 /// tolerance : float, default 1e-6
 ///     Of the contact problem, relative to the displacement.
 /// max_iterations : int, default 1000
-/// solver : "active_set" (default) or "polonsky_keer"
-/// time_rule : "exponential" (default), "exponential_linear", "rectangle" or "backward"
+/// time_rule : "exponential" (default) or "exponential_linear"
 /// edge : "refuse" (default) or "allow"
 ///     What happens when contact reaches the edge of the grid.
 /// series_tolerance : float, default 1e-4
-/// history_limit : int, default 2**31
-///     Bytes of the fields of direct sums.
 /// symmetry, window : bool, default True
 ///     Whether cells that symmetry gives, or that contact cannot reach, are left out.
 /// frame : "bodies" (default) or "indenter"
@@ -118,7 +115,7 @@ impl ViscoelasticContact {
     #[new]
     #[pyo3(
         signature = (grid, geometry, material, **options),
-        text_signature = "(grid, geometry, material, *, counter_body=None, kernel=None, attraction=None, temperature=None, times=None, tolerance=1e-6, max_iterations=1000, solver='active_set', time_rule='exponential', edge='refuse', series_tolerance=1e-4, history_limit=2147483648, symmetry=True, window=True, frame='bodies')"
+        text_signature = "(grid, geometry, material, *, counter_body=None, kernel=None, attraction=None, temperature=None, times=None, tolerance=1e-6, max_iterations=1000, time_rule='exponential', edge='refuse', series_tolerance=1e-4, symmetry=True, window=True, frame='bodies')"
     )]
     fn new(
         py: Python<'_>,

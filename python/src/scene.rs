@@ -3,7 +3,7 @@
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use viscocontact::contact::{Builder, Edge, Frame, Settings, Solver, TimeRule};
+use viscocontact::contact::{Builder, Edge, Frame, Settings, TimeRule};
 use viscocontact::{self as vc, ViscoelasticContact};
 
 use crate::attraction::Attraction;
@@ -22,20 +22,10 @@ fn setting(settings: Settings, name: &str, value: &Bound<'_, PyAny>) -> PyResult
         "tolerance" => settings.with_tolerance(value.extract()?),
         "max_iterations" => settings.with_max_iterations(value.extract()?),
         "series_tolerance" => settings.with_series_tolerance(value.extract()?),
-        "history_limit" => settings.with_history_limit(value.extract()?),
         "symmetry" => settings.with_symmetry(value.extract()?),
         "window" => settings.with_window(value.extract()?),
-        "solver" => {
-            let solvers = [("active_set", Solver::ActiveSet), ("polonsky_keer", Solver::PolonskyKeer)];
-            settings.with_solver(choice(name, &text()?, &solvers)?)
-        }
         "time_rule" => {
-            let rules = [
-                ("exponential", TimeRule::Exponential),
-                ("exponential_linear", TimeRule::ExponentialLinear),
-                ("rectangle", TimeRule::Rectangle),
-                ("backward", TimeRule::Backward),
-            ];
+            let rules = [("exponential", TimeRule::Exponential), ("exponential_linear", TimeRule::ExponentialLinear)];
             settings.with_time_rule(choice(name, &text()?, &rules)?)
         }
         "edge" => settings.with_edge(choice(name, &text()?, &[("refuse", Edge::Refuse), ("allow", Edge::Allow)])?),
@@ -127,7 +117,6 @@ pub fn memory<'py>(
         "history": memory.history,
         "solver": memory.solver,
         "kernel": memory.kernel,
-        "each_step": memory.each_step,
         "total": memory.total(),
     })
 }

@@ -158,7 +158,7 @@ ERRORS = {
     "memory": (MemoryError, "take fewer cells", lambda: ball(200_000)),
     "convergence": (vc.ConvergenceError, "iterations", lambda: ball(64, max_iterations=1).step(0.0, vc.Load.force(1.0))),
     "what is not covered": (NotImplementedError, "frame=\"indenter\"", lambda: ball().step_over((1, 0), 1.0, vc.Load.force(1.0))),
-    "an option": (ValueError, "\"active_set\", \"polonsky_keer\"", lambda: ball(solver="fast")),
+    "an option": (ValueError, "\"refuse\", \"allow\"", lambda: ball(edge="fast")),
     "a keyword": (TypeError, "unexpected keyword argument 'toleranse'", lambda: ball(toleranse=1e-3)),
     "a run": (TypeError, "give dt or tolerance", lambda: ball().follow(vc.Load.force(1.0), 1.0, dt=1.0, tolerance=1.0)),
     "times": (ValueError, "interval of times", lambda: ball().follow(vc.Load.force(1.0), 1.0, stop_at=vc.Times.every(-1.0))),

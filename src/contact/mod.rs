@@ -49,7 +49,7 @@ pub use state::snapshot::Snapshot;
 pub use step::attraction::PassReport;
 pub use stepper::{Contact, ViscoelasticContact};
 
-pub use crate::equilibrium::{Edge, Figures, Frame, Settings, Solver, TimeRule, Warnings};
+pub use crate::equilibrium::{Edge, Figures, Frame, Settings, TimeRule, Warnings};
 pub(crate) use computation::Computation;
 pub(crate) use scene::Scene;
 pub(crate) use state::{Clock, State};

@@ -25,11 +25,10 @@ pub(crate) struct Scene {
 
 impl Scene {
     /// Inputs of the time rule.
-    pub(crate) fn history_inputs(&self) -> HistoryInputs<'_> {
-        let Ground { grid, settings, attraction, .. } = &self.ground;
+    pub(crate) fn history_inputs(&self) -> HistoryInputs {
+        let Ground { grid, attraction, .. } = &self.ground;
         let least_side = grid.spacing().into_iter().fold(f64::INFINITY, f64::min);
-        let (material, history_limit) = (&self.material, settings.history_limit);
-        HistoryInputs { material, history_limit, least_side, pulls: attraction.is_some() }
+        HistoryInputs { least_side, pulls: attraction.is_some() }
     }
 
     /// The reduced time at a `time` not before the clock's.

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use crate::Grid;
 use crate::axis::Axis;
 use crate::equilibrium::held::net_sum;
-use crate::equilibrium::{Edge, Ground, Held, Region, Request, Solver, Trial, Window};
+use crate::equilibrium::{Edge, Ground, Held, Region, Request, Trial, Window};
 use crate::error::{Convergence, Error, Result, StepError, coverage, exact_length};
 use crate::load::{Load, Tilt, load_point};
 use crate::solver::{Counts, Freedom, Outcome, Solution};
@@ -99,8 +99,8 @@ pub(crate) fn converged(outcome: Outcome, ground: &Ground, solution: &Solution, 
             Err(Error::Step(StepError::LoadOutsideHull { time, body, at }))
         }
         Outcome::OutOfIterations | Outcome::Stagnated => {
-            let (active_set, stagnated) = (ground.settings.solver == Solver::ActiveSet, outcome == Outcome::Stagnated);
-            let convergence = Convergence::new(trace.samples(), tolerance, active_set, stagnated).into();
+            let stagnated = outcome == Outcome::Stagnated;
+            let convergence = Convergence::new(trace.samples(), tolerance, stagnated).into();
             Err(Error::Step(StepError::NotConverged { time, dt, iterations, residual, tolerance, convergence }))
         }
     }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::Grid;
 use crate::adhesion::Attraction;
-use crate::equilibrium::{Indenter, Region, Settings, Solver};
+use crate::equilibrium::{Indenter, Region, Settings};
 use crate::error::{Error, KernelError, Result, count_within};
 use crate::kernel::{HalfSpace, InfluenceKernel};
 use crate::parallel::Rows;
@@ -82,10 +82,7 @@ impl Ground {
         let [kernel, inverse, near] = self.kernel.bytes(&rows, region.folded());
         // three fields, a mark, and runs of cells
         let own = (24 + 1 + 4) * n + Bands::bytes(&Rows::all(cells), self.bodies) as u128;
-        let solver = match self.settings.solver {
-            Solver::ActiveSet => own + inverse + Extension::bytes(&rows),
-            Solver::PolonskyKeer => own,
-        };
+        let solver = own + inverse + Extension::bytes(&rows);
         let kernel = kernel + if self.attraction.is_some() { near } else { 0 };
         [grid, solver, kernel].map(|bytes| u64::try_from(bytes).unwrap_or(u64::MAX))
     }

@@ -127,7 +127,7 @@ pub(crate) fn fill_guess(
     fill(&mut guess.pressure, [&now.pressure, &before.pressure], &prediction);
     if !held.extrapolation.refresh_is_due() {
         fill(&mut guess.potential, [&now.potential, &before.potential], &prediction);
-    } else if window.needs_potential() {
+    } else {
         let (kernel, work) = (&window.kernel, &mut window.work);
         kernel.apply(&guess.pressure, &mut guess.potential, work);
         guess.counts.convolutions += 1;

@@ -26,7 +26,7 @@ pub(crate) use indenter::hull::Hull;
 pub(crate) use indenter::slope::STEEP;
 pub(crate) use request::{Request, Trial};
 pub(crate) use settings::DEFAULT_TOLERANCE;
-pub use settings::{Edge, Frame, Settings, Solver, TimeRule};
+pub use settings::{Edge, Frame, Settings, TimeRule};
 pub use warnings::Warnings;
 pub(crate) use window::Window;
 pub(crate) use window::region::Region;

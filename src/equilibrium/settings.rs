@@ -13,7 +13,7 @@ value! {
 /// ```
 /// use viscocontact::contact::{Settings, TimeRule};
 ///
-/// let settings = Settings::default().with_tolerance(1e-8).with_time_rule(TimeRule::Backward);
+/// let settings = Settings::default().with_tolerance(1e-8).with_time_rule(TimeRule::ExponentialLinear);
 /// assert_eq!(Settings::default().tolerance(), 1e-6);
 /// # let _ = settings;
 /// ```
@@ -29,8 +29,6 @@ pub struct Settings {
     tolerance: f64, with_tolerance;
     /// Iterations a step may take before it fails (default: 1000; range: 1 or more).
     max_iterations: usize, with_max_iterations;
-    /// The solver of the contact problem (default: [`Solver::ActiveSet`]).
-    solver: Solver, with_solver;
     /// The time rule of the hereditary integral (default: [`TimeRule::Exponential`]).
     time_rule: TimeRule, with_time_rule;
     /// What happens when contact reaches the edge of the grid (default: [`Edge::Refuse`]).
@@ -38,17 +36,14 @@ pub struct Settings {
     /// Relative error of the creep compliance of an exponential series that is fitted to a rheology without an exact
     /// one (default: 1e-4; range \[1e-8, 0.1\]).
     series_tolerance: f64, with_series_tolerance;
-    /// Memory that a direct sum may use for past steps, 8 bytes per computed cell and step; a step beyond it fails
-    /// \[bytes\] (default: 2 GiB).
-    history_limit: usize, with_history_limit;
     /// Whether only half or a quarter of the cells is computed where gap and load are even in x1, x2, or both,
     /// bitwise, and the number of cells along that axis is even (default: true). The iterations of the solver differ,
     /// and so does the result, by about ten times the [tolerance](Settings::tolerance) in the pressure and less in
     /// the approach.
     symmetry: bool, with_symmetry;
     /// Whether only the rectangle in which the bodies can touch is computed, and the rest of the grid on demand
-    /// (default: true). The rectangle grows with the contact; a step in which it grows allocates memory. With direct
-    /// sums, and on bodies other than the half-space loaded on the grid, such as layers, the whole grid is computed.
+    /// (default: true). The rectangle grows with the contact; a step in which it grows allocates memory. On
+    /// bodies other than the half-space loaded on the grid, such as layers, the whole grid is computed.
     window: bool, with_window;
     /// The frame of the grid (default: [`Frame::Bodies`]).
     frame: Frame, with_frame;
@@ -67,27 +62,12 @@ pub enum Frame {
     Bodies,
     /// The indenter: the bodies move under the grid, by whole cells
     /// ([`ViscoelasticContact::step_over`](crate::ViscoelasticContact::step_over)), endlessly. A step costs one
-    /// convolution more; a further relaxation time costs two fields and their recursion. The whole grid is computed,
-    /// by the exponential rule.
+    /// convolution more; a further relaxation time costs two fields and their recursion. The whole grid is computed.
     Indenter,
 }
 
-/// The solver of the contact problem of a step.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[non_exhaustive]
-pub enum Solver {
-    /// Preconditioned conjugate gradients on an active set: one convolution per iteration, and few
-    /// iterations.
-    #[default]
-    ActiveSet,
-    /// The conjugate gradients of Polonsky & Keer (1999) that the source paper uses: two convolutions
-    /// per iteration.
-    PolonskyKeer,
-}
-
-/// The time rule of the hereditary integral. Figure 6 of the [paper](crate::paper) compares numbers of steps by its
-/// rule.
+/// The time rule of the hereditary integral. The rule of the [paper](crate::paper), of first order, is in the package
+/// `viscocontact-paper`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -107,13 +87,6 @@ pub enum TimeRule {
     /// without elastic response). A prediction never rises above the undeformed surface, whatever the lengths of the
     /// steps.
     ExponentialLinear,
-    /// The rule of the source paper, a direct sum over all past steps (Eq. 11): first order, oscillates when
-    /// a step is longer than the relaxation time of a Maxwell body and diverges beyond twice that; needs
-    /// an elastic response.
-    Rectangle,
-    /// A direct sum over all past steps with the rheology's own J(t), without a series: first order, stable for steps
-    /// of any length, one field per past step ([`Settings::history_limit`]).
-    Backward,
 }
 
 /// What happens when contact reaches the outermost cells of the grid.
@@ -134,11 +107,9 @@ impl Default for Settings {
         Settings {
             tolerance: DEFAULT_TOLERANCE,
             max_iterations: 1000,
-            solver: Solver::default(),
             time_rule: TimeRule::default(),
             edge: Edge::default(),
             series_tolerance: 1e-4,
-            history_limit: 2 << 30,
             symmetry: true,
             window: true,
             frame: Frame::Bodies,
@@ -146,27 +117,7 @@ impl Default for Settings {
     }
 }
 
-impl TimeRule {
-    /// Whether the rule needs an exponential series of the creep.
-    pub(crate) fn needs_series(self) -> bool {
-        matches!(self, TimeRule::Exponential | TimeRule::ExponentialLinear)
-    }
-}
-
 impl Settings {
-    /// The whole algorithm of the source paper: Polonsky–Keer solver, rectangle rule, direct sums. The baseline of
-    /// every comparison. It is cheaper than the paper's in one respect: the convolutions of past increments are kept.
-    /// The example `paper_cost` repeats them in each step.
-    pub fn paper() -> Settings {
-        Settings {
-            solver: Solver::PolonskyKeer,
-            time_rule: TimeRule::Rectangle,
-            symmetry: false,
-            window: false,
-            ..Settings::default()
-        }
-    }
-
     /// How the displacement changes within a step of given length.
     pub(crate) fn interpolant(&self) -> Interpolant {
         if self.time_rule == TimeRule::ExponentialLinear { Interpolant::Linear } else { Interpolant::CorrectedLinear }
@@ -199,11 +150,9 @@ mod tests {
         Settings {
             tolerance: 1e-7,
             max_iterations: 7,
-            solver: Solver::PolonskyKeer,
-            time_rule: TimeRule::Backward,
+            time_rule: TimeRule::ExponentialLinear,
             edge: Edge::Allow,
             series_tolerance: 1e-3,
-            history_limit: 1 << 20,
             symmetry: false,
             window: false,
             frame: Frame::Indenter,
@@ -215,11 +164,9 @@ mod tests {
         let settings = Settings::default()
             .with_tolerance(1e-7)
             .with_max_iterations(7)
-            .with_solver(Solver::PolonskyKeer)
-            .with_time_rule(TimeRule::Backward)
+            .with_time_rule(TimeRule::ExponentialLinear)
             .with_edge(Edge::Allow)
             .with_series_tolerance(1e-3)
-            .with_history_limit(1 << 20)
             .with_symmetry(false)
             .with_window(false)
             .with_frame(Frame::Indenter);

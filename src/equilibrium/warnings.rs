@@ -47,10 +47,6 @@ bitflags! {
         /// fail with
         /// [`StepError::BeyondMaterial`](crate::contact::StepError::BeyondMaterial).
         const NEAR_END_OF_MATERIAL = 1 << 4;
-        /// The time rule oscillates at steps of this length. The rectangle rule does where the bodies creep in a step
-        /// by more than they yield at once, C(Δ) > 2 C(0), which is Δ > τ on a Maxwell body; on fluids it diverges
-        /// further on.
-        const RINGS = 1 << 5;
         /// The solver stagnated, and its slow fall-back took over for a while:
         /// [`StepReport::fallback_iterations`](crate::contact::StepReport::fallback_iterations). The result meets the
         /// tolerance. If this happens often, take smaller steps or a larger tolerance.
@@ -146,7 +142,7 @@ impl IntoIterator for &Warnings {
 }
 
 /// What each warning says, and its cure.
-const MESSAGES: [(Warnings, &str); 22] = [
+const MESSAGES: [(Warnings, &str); 21] = [
     (Warnings::NEAR_EDGE, "contact is within two cells of the edge of the grid: enlarge the grid"),
     (Warnings::FEW_CELLS, "contact is fewer than 8 cells across, of a body or of patches on average: refine the mesh"),
     (Warnings::EXTRAPOLATED, "the material is extrapolated beyond its data: measure it longer, or end earlier"),
@@ -155,7 +151,6 @@ const MESSAGES: [(Warnings, &str); 22] = [
         Warnings::NEAR_END_OF_MATERIAL,
         "the next such step exceeds the times at which the material is known: take a shorter one, or measure longer",
     ),
-    (Warnings::RINGS, "the time rule rings at steps of this length: take shorter ones, or another rule"),
     (Warnings::FALL_BACK, "the solver needed its slow fall-back: take smaller steps if this happens often"),
     (Warnings::UNCERTAIN_MATERIAL, "the table of the material leaves its creep uncertain: see its fit report"),
     (

@@ -33,8 +33,6 @@ const FEWEST: usize = 4;
 pub struct Convergence {
     samples: Vec<(usize, f64)>,
     tolerance: f64,
-    /// Whether the solver lowers the energy of the contact in every iteration, whatever the residual does.
-    monotone: bool,
     /// Whether the solver ended because no step made progress.
     stagnated: bool,
 }
@@ -55,8 +53,8 @@ pub enum Trend {
 }
 
 impl Convergence {
-    pub(crate) fn new(samples: Vec<(usize, f64)>, tolerance: f64, monotone: bool, stagnated: bool) -> Convergence {
-        Convergence { samples, tolerance, monotone, stagnated }
+    pub(crate) fn new(samples: Vec<(usize, f64)>, tolerance: f64, stagnated: bool) -> Convergence {
+        Convergence { samples, tolerance, stagnated }
     }
 
     /// Pairs of iterations done and the residual after them, in order: at most 33, spread over the whole solve, the
@@ -106,32 +104,29 @@ fn lowest(samples: &[(usize, f64)]) -> f64 {
 impl fmt::Display for Convergence {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let lowest = self.lowest();
-        match (self.trend(), self.monotone) {
-            (Trend::TooFew, _) => f.write_str("too few iterations to show a trend: raise Settings::max_iterations"),
-            (Trend::Falling, _) => {
+        match self.trend() {
+            Trend::TooFew => f.write_str("too few iterations to show a trend: raise Settings::max_iterations"),
+            Trend::Falling => {
                 f.write_str("the residual was still falling: raise Settings::max_iterations")?;
                 match self.iterations_needed() {
                     Some(needed) => write!(f, " (about {needed} are needed at this rate)"),
                     None => Ok(()),
                 }
             }
-            (Trend::Rounding, _) => write!(
+            Trend::Rounding => write!(
                 f,
                 "the residual stagnates at {lowest:.1e}, the level of rounding: raise Settings::tolerance above \
                 that, or bring the scales of the scene closer together (a grid not much larger than the contact)"
             ),
             // of a body alone, not of a step
-            (Trend::Stalled, false) if self.samples.is_empty() => f.write_str(
+            Trend::Stalled if self.samples.is_empty() => f.write_str(
                 "the body hardly determines the pressure under a rigid motion: check its influence coefficients",
             ),
-            (Trend::Stalled, true) if self.stagnated => {
+            Trend::Stalled if self.stagnated => {
                 write!(f, "the residual stagnates at {lowest:.1e}, far above rounding: take smaller steps")
             }
-            (_, true) => {
+            Trend::Stalled => {
                 write!(f, "the lowest residual so far is {lowest:.1e}: raise Settings::max_iterations")
-            }
-            (_, false) => {
-                write!(f, "the residual does not fall (lowest: {lowest:.1e}): use Solver::ActiveSet")
             }
         }
     }
@@ -143,7 +138,7 @@ mod tests {
 
     fn history(residual: impl Fn(usize) -> f64) -> Convergence {
         let samples = (0..30).map(|k| (10 * k, residual(k))).collect();
-        Convergence::new(samples, 1e-12, false, false)
+        Convergence::new(samples, 1e-12, false)
     }
 
     #[test]
@@ -152,22 +147,22 @@ mod tests {
         for (convergence, trend, advice) in [
             (history(|k| 0.5_f64.powi(k as i32)), Trend::Falling, "raise Settings::max_iterations (about 399"),
             (history(|k| 1e-3_f64.powi(k.min(4) as i32)), Trend::Rounding, "raise Settings::tolerance"),
-            (history(|k| 1e-3 + 0.5_f64.powi(3 * k as i32)), Trend::Stalled, "use Solver::ActiveSet"),
-            (history(|k| 1e-3 * wave(k)), Trend::Stalled, "use Solver::ActiveSet"),
-            (history(|k| 1e-3 * 1.4_f64.powi(k as i32)), Trend::Stalled, "(lowest: 1.0e-3): use Solver::ActiveSet"),
+            (history(|k| 1e-3 + 0.5_f64.powi(3 * k as i32)), Trend::Stalled, "raise Settings::max_iterations"),
+            (history(|k| 1e-3 * wave(k)), Trend::Stalled, "raise Settings::max_iterations"),
+            (history(|k| 1e-3 * 1.4_f64.powi(k as i32)), Trend::Stalled, "the lowest residual so far is 1.0e-3"),
         ] {
             assert_eq!(convergence.trend(), trend, "{convergence}");
             assert!(convergence.to_string().contains(advice), "{convergence}");
             assert_eq!(convergence.iterations_needed().is_some(), trend == Trend::Falling);
         }
-        let few = Convergence::new(vec![(0, 1.0), (1, 0.5)], 1e-6, false, false);
+        let few = Convergence::new(vec![(0, 1.0), (1, 0.5)], 1e-6, false);
         assert_eq!(few.trend(), Trend::TooFew);
         for (residual, trend) in [(3e-2, Trend::Stalled), (1e-9, Trend::Rounding)] {
-            let stagnated = Convergence::new(vec![(0, 1.0), (80, residual)], 1e-10, true, true);
+            let stagnated = Convergence::new(vec![(0, 1.0), (80, residual)], 1e-10, true);
             assert_eq!(stagnated.trend(), trend);
             assert_eq!(stagnated.to_string().contains("smaller steps"), trend == Trend::Stalled, "{stagnated}");
         }
-        let none = Convergence::new(Vec::new(), 1e-6, false, false);
+        let none = Convergence::new(Vec::new(), 1e-6, false);
         assert!(none.lowest() == f64::INFINITY && !none.to_string().is_empty());
     }
 }

@@ -53,9 +53,6 @@ not_covered! {
     // parts of a scene
     SEVERAL_BODIES: "a contact of several rigid bodies",
         Ranks: ONE_PROCESS, Attraction: "compute one body", SteadyMotion: "take one";
-    POLONSKY_KEER: "Solver::PolonskyKeer", Ranks: ONE_PROCESS, Attraction: "take Solver::ActiveSet";
-    DIRECT_SUM: "a direct sum",
-        Ranks: ONE_PROCESS, Attraction: "take TimeRule::Exponential", FixedToIndenter: OTHER_FRAME;
     FRAME_OF_INDENTER: "Frame::Indenter", Ranks: ONE_PROCESS, Attraction: "take Frame::Bodies";
     SHARED_ROWS: "a contact that ranks share out",
         Attraction: "compute it in one process", SteadyMotion: "compute it in one process";

@@ -43,7 +43,7 @@ impl Error {
                 | MapError::NotFilled { .. } => ErrorKind::Value,
                 _ => ErrorKind::File,
             },
-            Error::OutOfMemory { .. } | Error::Step(StepError::HistoryFull { .. }) => ErrorKind::Memory,
+            Error::OutOfMemory { .. } => ErrorKind::Memory,
             Error::Cancelled { .. } | Error::Ranks(_) => ErrorKind::Cancelled,
             Error::Material(MaterialError::PoorFit { .. })
             | Error::Adhesion(AdhesionError::NotConverged { .. })

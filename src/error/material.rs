@@ -54,10 +54,10 @@ pub enum MaterialError {
     },
 
     /// No exponential series with positive coefficients approximates the material function within the tolerance. Allow
-    /// a greater error, or use [`TimeRule::Backward`](crate::contact::TimeRule::Backward), which needs no series.
+    /// a greater error, or shorten the [times](crate::contact::Builder::times) of the fit.
     #[error(
         "no exponential series was found within {tolerance:e}: the error of the best is {misfit:.1e}, at {} s; \
-        raise the tolerance (Settings::series_tolerance), or use TimeRule::Backward, which needs no series",
+        raise the tolerance (Settings::series_tolerance) to at least that, or fit over shorter times",
         rounded(*.at, 3)
     )]
     PoorFit {

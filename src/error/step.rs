@@ -95,8 +95,7 @@ pub enum StepError {
     },
 
     /// The body has no elastic response (J(0) = 0, as Kelvin–Voigt). It cannot follow a jump of the load, a step of
-    /// length zero, unless the jump removes the load or the present state already satisfies it; nor is the paper's
-    /// rectangle rule possible. Ramp the load over a short time, or give the body a glassy compliance.
+    /// length zero, unless the jump removes the load or the present state already satisfies it. Ramp the load over a short time, or give the body a glassy compliance.
     #[error(
         "at t = {time} s: {what} needs an elastic response, but the material has none (its compliance at t = 0 is \
         zero); ramp the load over a short time or add a glassy compliance", time = rounded(*.time, TIME))]
@@ -105,23 +104,6 @@ pub enum StepError {
         time: f64,
         /// The call.
         what: &'static str,
-    },
-
-    /// The history of a direct sum would exceed [`Settings::history_limit`](crate::contact::Settings). Raise the limit,
-    /// or use [`TimeRule::Exponential`](crate::contact::TimeRule::Exponential), whose memory does not grow.
-    #[error(
-        "at t = {time} s the direct sum over {steps} past steps would take {bytes} bytes, more than \
-        Settings::history_limit = {limit}: raise it, or use TimeRule::Exponential, whose memory does not \
-        grow", time = rounded(*.time, TIME))]
-    HistoryFull {
-        /// End of the step \[s\].
-        time: f64,
-        /// Number of past steps.
-        steps: usize,
-        /// Bytes that the history would take with this step.
-        bytes: usize,
-        /// Bytes allowed.
-        limit: usize,
     },
 
     /// The solver did not converge within [`Settings::max_iterations`](crate::contact::Settings::max_iterations); the

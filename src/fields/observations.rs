@@ -91,7 +91,7 @@ impl Fields<'_> {
                 .unless_lost(|| Ok(flat_punch(kernel, |k| current.solution.pressure[k] > 0.0, |k| motion(j, k))))?
                 .map_err(|(iterations, residual)| {
                     let (time, dt, tolerance) = (self.about.time.unwrap_or(0.0), 0.0, FLAT_PUNCH_TOLERANCE);
-                    let convergence = Convergence::new(Vec::new(), tolerance, false, true).into();
+                    let convergence = Convergence::new(Vec::new(), tolerance, true).into();
                     Error::Step(StepError::NotConverged { time, dt, iterations, residual, tolerance, convergence })
                 })?;
             let area = region.cell_area();

@@ -1,4 +1,4 @@
-//! Exponential integration of the relaxation form of the hereditary integral.
+//! Exponential integration of the relaxation form of the hereditary integral, in place of the sum of Eq. 11.
 
 use crate::hereditary::moments::{Relaxed, RelaxedSteps, moments as moments_of, slopes as slopes_of};
 use crate::rheology::{CreepSpectrum, RelaxationSpectrum};

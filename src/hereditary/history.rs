@@ -1,7 +1,5 @@
-//! State of the hereditary integral, for every time rule.
+//! State of the hereditary integral.
 
-use crate::error::Result;
-use crate::hereditary::direct_sum::{DirectSum, Weighting};
 use crate::hereditary::exponential_rule::ExponentialRule;
 use crate::hereditary::field::Field;
 use crate::hereditary::interval::{HistoryInputs, Interval};
@@ -14,7 +12,7 @@ use crate::rheology::CreepSpectrum;
 #[derive(Debug)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct History {
-    rule: Rule,
+    rule: ExponentialRule,
     pub(super) displacement: RememberedField,
     /// Where only a window of the grid is computed, the field U whose convolution K U is the displacement elsewhere.
     /// Zero wherever there never was contact.
@@ -27,34 +25,8 @@ pub(crate) struct History {
 
 clone_by_fields! { History { rule, displacement, far, frame, start_is_kept } }
 
-/// How the displacement follows from its past.
-#[derive(Debug)]
-#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
-#[expect(clippy::large_enum_variant, reason = "a contact has one")]
-enum Rule {
-    Exponential(ExponentialRule),
-    DirectSum(DirectSum),
-}
-
-impl Clone for Rule {
-    fn clone(&self) -> Rule {
-        match self {
-            Rule::Exponential(own) => Rule::Exponential(own.clone()),
-            Rule::DirectSum(own) => Rule::DirectSum(own.clone()),
-        }
-    }
-
-    fn clone_from(&mut self, other: &Rule) {
-        match (self, other) {
-            (Rule::Exponential(own), Rule::Exponential(other)) => own.clone_from(other),
-            (Rule::DirectSum(own), Rule::DirectSum(other)) => own.clone_from(other),
-            (own, other) => *own = other.clone(),
-        }
-    }
-}
-
 impl History {
-    fn new(rule: Rule, displacement: RememberedField, frame: Option<MovingFrame>) -> History {
+    fn new(rule: ExponentialRule, displacement: RememberedField, frame: Option<MovingFrame>) -> History {
         History { rule, displacement, far: None, frame, start_is_kept: false }
     }
 
@@ -62,12 +34,7 @@ impl History {
     pub(crate) fn exponential(creep: &CreepSpectrum) -> History {
         let rule = ExponentialRule::new(creep);
         let displacement = RememberedField::on_no_cells(&rule, rule.branches());
-        History::new(Rule::Exponential(rule), displacement, None)
-    }
-
-    /// Undisturbed bodies, by a direct sum over all steps; on no cells yet.
-    pub(crate) fn direct_sum(weighting: Weighting) -> History {
-        History::new(Rule::DirectSum(DirectSum::new(weighting)), RememberedField::new(0, 0), None)
+        History::new(rule, displacement, None)
     }
 
     /// Undisturbed bodies that move under the grid, by the exponential rule; on no cells yet.
@@ -75,17 +42,14 @@ impl History {
         let rule = ExponentialRule::new(creep);
         let frame = MovingFrame::new(RememberedField::on_no_cells(&rule, rule.branches()), periodic);
         let displacement = RememberedField::on_no_cells(&rule, 0);
-        History::new(Rule::Exponential(rule), displacement, Some(frame))
+        History::new(rule, displacement, Some(frame))
     }
 
     /// A copy on other cells, a `window` of the grid or all of it. `map` gives its fields, one for each field here.
     pub(crate) fn map(&self, cells: [usize; 2], window: bool, map: &mut impl FnMut(Field<'_>) -> Vec<f64>) -> History {
         let History { rule, displacement, far, frame, start_is_kept } = self;
         History {
-            rule: match rule {
-                Rule::Exponential(own) => Rule::Exponential(own.clone()),
-                Rule::DirectSum(own) => Rule::DirectSum(own.map(map)),
-            },
+            rule: rule.clone(),
             displacement: displacement.map(far.as_ref(), map),
             far: far.as_ref().filter(|_| window).map(|far| far.map(None, map)),
             frame: frame.as_ref().map(|frame| frame.map(cells, map)),
@@ -112,28 +76,21 @@ impl History {
 
     /// Whether the displacement outside a window of the grid can be found.
     pub(crate) fn has_far_field(&self) -> bool {
-        self.frame.is_none() && !self.grows()
+        self.frame.is_none()
     }
 
-    /// Whether each step adds a field to the past.
-    pub(crate) fn grows(&self) -> bool {
-        matches!(self.rule, Rule::DirectSum(_))
-    }
-
-    /// The exponential rule, if the history follows it.
-    pub(crate) fn exponential_rule(&self) -> Option<&ExponentialRule> {
-        if let Rule::Exponential(own) = &self.rule { Some(own) } else { None }
+    /// The recursion that the displacement follows.
+    pub(crate) fn rule(&self) -> &ExponentialRule {
+        &self.rule
     }
 
     /// The past does not determine how the displacement continues, as after a corner of the load.
     pub(crate) fn reset_differences(&mut self) {
-        if let Rule::Exponential(own) = &mut self.rule {
-            own.reset_differences();
-        }
+        self.rule.reset_differences();
     }
 
     /// The rule, and all fields that follow the recursion of the displacement.
-    fn parts(&mut self) -> (&mut Rule, impl Iterator<Item = &mut RememberedField>) {
+    fn parts(&mut self) -> (&mut ExponentialRule, impl Iterator<Item = &mut RememberedField>) {
         let History { rule, displacement, far, frame, .. } = self;
         let of_frame = frame.iter_mut().flat_map(MovingFrame::fields_mut);
         (rule, [displacement].into_iter().chain(far).chain(of_frame))
@@ -160,16 +117,11 @@ impl History {
         self.start_is_kept = false;
     }
 
-    /// Returns to the start of the last step, which must be kept; `touched` is true if the step was taken into a
-    /// direct sum.
-    pub(crate) fn roll_back(&mut self, touched: bool) {
+    /// Returns to the start of the last step, which must be kept.
+    pub(crate) fn roll_back(&mut self) {
         self.start_is_kept = false;
         let (rule, fields) = self.parts();
-        match rule {
-            Rule::Exponential(own) => own.roll_back(),
-            Rule::DirectSum(own) if touched => own.roll_back(),
-            Rule::DirectSum(_) => {}
-        }
+        rule.roll_back();
         fields.for_each(RememberedField::roll_back);
     }
 
@@ -190,7 +142,7 @@ impl History {
 
     /// Whether the displacement itself is part of the past, rather than computed anew from v.
     pub(crate) fn integrates_displacement(&self) -> bool {
-        self.exponential_rule().is_some_and(ExponentialRule::has_memory)
+        self.rule.has_memory()
     }
 
     /// Whether the surface in contact stays, from step to step, exactly on a body whose motion is prescribed.
@@ -203,34 +155,22 @@ impl History {
     pub(crate) fn predict(
         &mut self,
         step: Interval,
-        inputs: HistoryInputs<'_>,
+        inputs: HistoryInputs,
         kernel: &LocalKernel,
         work: &mut Workspace,
-    ) -> Result<(f64, usize)> {
+    ) -> (f64, usize) {
         self.start_is_kept = false;
         let History { rule, displacement, far, frame, .. } = self;
-        match rule {
-            Rule::Exponential(own) => {
-                own.compute_weights(step.dt, step.interpolant);
-                if let Some(frame) = frame {
-                    let convolutions = frame.predict(own, step.stride, inputs.least_side, displacement, (kernel, work));
-                    return Ok((own.compliance(), convolutions));
-                }
-                // the sign of u is no criterion where pressures raise the surface
-                let sign_counts = !kernel.whole.raises() && !inputs.pulls;
-                displacement.predict_non_negative(own, inputs.least_side, kernel.rows(), || sign_counts);
-                far.iter_mut().for_each(|far| far.predict(own));
-                Ok((own.compliance(), 0))
-            }
-            Rule::DirectSum(own) => {
-                let RememberedField { now, trial, .. } = displacement;
-                let c = own.predict(step, inputs, trial)?;
-                if c == 0.0 {
-                    trial.copy_from_slice(now); // the sum is the same but for rounding
-                }
-                Ok((c, 0))
-            }
+        rule.compute_weights(step.dt, step.interpolant);
+        if let Some(frame) = frame {
+            let convolutions = frame.predict(rule, step.stride, inputs.least_side, displacement, (kernel, work));
+            return (rule.compliance(), convolutions);
         }
+        // the sign of u is no criterion where pressures raise the surface
+        let sign_counts = !kernel.whole.raises() && !inputs.pulls;
+        displacement.predict_non_negative(rule, inputs.least_side, kernel.rows(), || sign_counts);
+        far.iter_mut().for_each(|far| far.predict(rule));
+        (rule.compliance(), 0)
     }
 
     /// Adds the response to the pressure found for the step, and v = K p; `displace` turns u_old, given the
@@ -258,25 +198,23 @@ impl History {
     }
 
     /// u − u_old, by which a free displacement recedes in the step predicted last: calls `take` with it for each cell
-    /// that is `wanted`. Only the exponential rule has it.
+    /// that is `wanted`; none where the bodies move.
     pub(crate) fn recovery(&self, wanted: impl Fn(usize) -> bool, mut take: impl FnMut(usize, f64)) {
-        let Some(own) = self.exponential_rule().filter(|_| self.frame.is_none()) else { return };
+        if self.frame.is_some() {
+            return;
+        }
+        let own = &self.rule;
         let (held, now) = (own.compliance() * own.equilibrium(), &self.displacement.now);
         self.displacement.recovery(&own.tried, wanted, |k, by_past| take(k, held * now[k] + by_past));
     }
 
-    /// Accepts the step predicted last, given v = K p at its start and at its end; `touched` is true if anything has
-    /// ever been displaced.
-    pub(crate) fn commit(&mut self, step: Interval, potentials: [&[f64]; 2], touched: bool) {
+    /// Accepts the step predicted last.
+    pub(crate) fn commit(&mut self, step: Interval) {
         if let Some(frame) = self.frame.as_mut().filter(|_| step.stride != [0; 2]) {
             frame.shift_start(step.stride, &mut self.displacement);
         }
         let (rule, fields) = self.parts();
-        match rule {
-            Rule::Exponential(own) => own.commit(),
-            Rule::DirectSum(own) if touched => own.commit((step.reduced, step.dt), potentials),
-            Rule::DirectSum(_) => {}
-        }
+        rule.commit();
         fields.for_each(RememberedField::commit);
         // under bodies that moved, the field before the step belongs to other places
         self.start_is_kept = step.stride == [0; 2];
@@ -285,26 +223,21 @@ impl History {
     /// Lets the past take in the last step, whose start is given up.
     pub(crate) fn apply_pending_step(&mut self) {
         self.start_is_kept = false;
-        if let (Rule::Exponential(own), fields) = self.parts() {
-            fields.for_each(|field| field.apply_pending_step(own));
-        }
+        let (rule, fields) = self.parts();
+        fields.for_each(|field| field.apply_pending_step(rule));
     }
 
     /// Whether it follows the same rule as another, on these cells, a `window` of the grid or all of it: a file may
     /// hold anything.
     #[cfg(feature = "checkpoint")]
     pub(crate) fn fits(&self, other: &History, cells: [usize; 2], window: bool) -> bool {
-        let (kept, rule_fits) = match (&self.rule, &other.rule) {
-            (Rule::Exponential(own), Rule::Exponential(other)) => (own.kept(), own.fits(other)),
-            (Rule::DirectSum(own), Rule::DirectSum(other)) => (0, own.fits(other)),
-            _ => (0, false),
-        };
+        let kept = self.rule.kept();
         let mut fields = std::iter::once(&self.displacement).chain(&self.far);
         let frame_fits = match (&self.frame, &other.frame) {
             (Some(own), Some(other)) => own.fits(other, kept, cells),
             (own, other) => own.is_none() && other.is_none(),
         };
-        rule_fits
+        self.rule.fits(&other.rule)
             && frame_fits
             && fields.all(|field| field.fits(&other.displacement, kept))
             && self.far.is_some() == (window && self.has_far_field())

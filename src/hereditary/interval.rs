@@ -1,14 +1,10 @@
 //! Time steps, and what else a time rule takes.
 
 use crate::hereditary::exponential_rule::Interpolant;
-use crate::rheology::Material;
 
 /// Inputs of a time rule besides the past.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct HistoryInputs<'a> {
-    pub(crate) material: &'a Material,
-    /// Bytes that a direct sum may fill with its past.
-    pub(crate) history_limit: usize,
+pub(crate) struct HistoryInputs {
     /// Whether tractions may raise the surface.
     pub(crate) pulls: bool,
     /// The shorter side of a cell \[m\].

@@ -7,13 +7,10 @@
 //!
 //! with one number c, the compliance of the step, and one field u_old. The contact problem of the step is then the
 //! problem of an elastic body. [`History`] is the one interface to this: a step predicts c and u_old, responds to a
-//! pressure, and is committed when it is accepted. Three rules are behind it:
+//! pressure, and is committed when it is accepted. Two rules are behind it:
 //!
 //! * [`ExponentialRule`]: a recursion with one field per relaxation time, updated in place; stable for steps of any
 //!   length. Within a step u is a polynomial of time, see [`Interpolant`].
-//! * [`DirectSum`](direct_sum::DirectSum): every past increment of v = K p, summed anew in each step with weights
-//!   from C(t). It needs no exponential series and serves the paper's rectangle rule and the backward rule. For the
-//!   paper's own cost it can keep the increments of p instead, and convolve each of them in every step.
 //! * [`MovingFrame`](moving_frame::MovingFrame): the exponential rule for the field whose convolution is the
 //!   displacement, so that the bodies can move under the grid.
 //!
@@ -21,7 +18,6 @@
 //! field of a window, and the moving frame alike.
 
 mod branch_energies;
-mod direct_sum;
 mod error_weight;
 mod exponential_rule;
 mod field;
@@ -39,7 +35,6 @@ mod step_context;
 mod time_error;
 
 pub(crate) use branch_energies::BranchEnergies;
-pub(crate) use direct_sum::Weighting;
 pub(crate) use exponential_rule::{ExponentialRule, Interpolant};
 pub(crate) use field::{Field, Role};
 #[cfg(feature = "checkpoint")]

@@ -109,7 +109,10 @@ impl History {
     /// is the error of a force under given motion. Under a given force, the error of u is c times it, or more if the
     /// defects of many steps add up.
     pub(crate) fn time_error(&self, measure: ErrorMeasure<'_>) -> TimeError {
-        let Some(rule) = self.exponential_rule().filter(|rule| rule.has_memory()) else { return TimeError::default() };
+        let rule = self.rule();
+        if !rule.has_memory() {
+            return TimeError::default();
+        }
         let (dt, context) = (rule.tried.dt, measure.context);
         if rule.has_dashpot() && dt <= context.beginning {
             return TimeError::default();

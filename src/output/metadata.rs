@@ -125,26 +125,13 @@ impl Metadata {
 
 /// The fields of settings.
 fn settings(settings: &Settings) -> String {
-    let Settings {
-        tolerance,
-        max_iterations,
-        solver,
-        time_rule,
-        edge,
-        series_tolerance,
-        history_limit,
-        symmetry,
-        window,
-        frame,
-    } = *settings;
+    let Settings { tolerance, max_iterations, time_rule, edge, series_tolerance, symmetry, window, frame } = *settings;
     object([
         ("tolerance", number(tolerance)),
         ("max_iterations", max_iterations.to_string()),
-        ("solver", text(&format!("{solver:?}"))),
         ("time_rule", text(&format!("{time_rule:?}"))),
         ("edge", text(&format!("{edge:?}"))),
         ("series_tolerance", number(series_tolerance)),
-        ("history_limit", history_limit.to_string()),
         ("symmetry", symmetry.to_string()),
         ("window", window.to_string()),
         ("frame", text(&format!("{frame:?}"))),

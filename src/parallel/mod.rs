@@ -47,7 +47,6 @@
 //! | half-spaces, bodies periodic along one axis or both, lines, layers | several rigid bodies |
 //! | symmetry: half or a quarter of the grid | loads that break a symmetry that was found (set [`Settings::symmetry`](crate::contact::Settings::symmetry) to false) |
 //! | force and approach, tilts, runs in steps given or chosen by their error | indenters that move or change, [`Frame::Indenter`](crate::contact::Frame::Indenter) |
-//! | series of relaxation times | direct sums, [`Solver::PolonskyKeer`](crate::contact::Solver::PolonskyKeer) |
 //! | snapshots in memory; checkpoints, which any number of ranks resumes | checkpoints of a window of the grid ([`Settings::window`](crate::contact::Settings::window)), or of indenters that have moved |
 //! | [files](crate::output): NPZ, NPY, VTK, histories; profiles | pictures, patches, distributions, asymmetry, stresses, [`mesh_error`](crate::fields::Fields::mesh_error) |
 //!

@@ -3,16 +3,13 @@ use crate::rheology::Rheology;
 
 /// A rheology given by a closure J(t): shear creep compliance \[1/Pa\] at t ≥ 0 \[s\].
 ///
-/// A contact uses it in one of two ways:
-///
-/// * as an exponential series, the default: fitted over the times of the scene
-///   ([`Builder::times`](crate::contact::Builder::times)) within
-///   [`Settings::series_tolerance`](crate::contact::Settings); the error is reported by
-///   [`ViscoelasticContact::material`](crate::ViscoelasticContact::material). The default
-///   [`TimeRule`](crate::contact::TimeRule) sets the order in time; memory and work per step do not grow.
-/// * exactly, by a direct sum over all past steps: [`TimeRule::Backward`](crate::contact::TimeRule::Backward). First
-///   order in time; one field of 8 bytes per cell for each past step, up to
-///   [`Settings::history_limit`](crate::contact::Settings), all of them read at every step.
+/// A contact uses it as an exponential series, fitted over the times of the scene
+/// ([`Builder::times`](crate::contact::Builder::times)) within
+/// [`Settings::series_tolerance`](crate::contact::Settings); the error is reported by
+/// [`ViscoelasticContact::material`](crate::ViscoelasticContact::material). Memory and work per step do not grow. For a
+/// compliance that no series fits, sum over the past yourself, in a loop over
+/// [`ElasticContact::solve`](crate::elastic::ElasticContact::solve) on the surface that is left of it
+/// ([`ElasticContact::set_surface`](crate::elastic::ElasticContact::set_surface)).
 ///
 /// ```
 /// use viscocontact::rheology::{FnRheology, Rheology};

@@ -127,7 +127,8 @@ use crate::error::{Result, UserError};
 ///
 /// J(t) is the shear strain at time t after a unit shear stress was applied at t = 0. It is ≥ 0 and never decreases;
 /// J(0) = 1/G is the elastic response, 0 for a body without one. After t = 0 it is positive, and concave for every body
-/// of springs and dashpots; other bodies have no series, and need a direct sum ([`laws`]).
+/// of springs and dashpots; other bodies have no exact series: one is fitted
+/// ([`laws`]).
 ///
 /// ```
 /// use viscocontact::rheology::Rheology;

@@ -116,7 +116,7 @@ pub(super) fn adaptive_step(
             continue;
         }
         let motion_is_given = !computed.trial.free.iter().any(|freedom| freedom.translation);
-        let rule = computed.state.history.exponential_rule();
+        let rule = computed.state.history.rule();
         match &halves {
             Some(errors) => {
                 errors.iter().for_each(|error| control.past.include(rule, 0.5 * dt, error, motion_is_given))

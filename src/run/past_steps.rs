@@ -63,13 +63,7 @@ impl PastSteps {
     }
 
     /// Includes a step of length `dt`; `motion_is_given` states whether its motion is given.
-    pub(super) fn include(
-        &mut self,
-        rule: Option<&ExponentialRule>,
-        dt: f64,
-        error: &TimeError,
-        motion_is_given: bool,
-    ) {
+    pub(super) fn include(&mut self, rule: &ExponentialRule, dt: f64, error: &TimeError, motion_is_given: bool) {
         self.count += 1;
         for (which, defect) in error.defect.into_iter().enumerate() {
             self.flow[which] += self.fluidity * dt * defect;
@@ -78,7 +72,6 @@ impl PastSteps {
                 crept[which] = decay * crept[which] + *compliance * (1.0 - decay) * defect;
             }
         }
-        let Some(rule) = rule else { return };
         let [contact, surface] = self.lasting.get_or_insert_with(|| [(); 2].map(|()| LastingError::none(rule)));
         contact.include(rule, error.defect[0], motion_is_given);
         surface.include(rule, error.surface, false);

@@ -302,10 +302,8 @@ impl StepControl {
 
 /// The order of the error of a step in its length, and whether the body responds by an immediate dashpot.
 fn order_of(state: &State, settings: &Settings) -> (u32, bool) {
-    match state.history.exponential_rule() {
-        Some(rule) => (rule.order(settings.adaptive_interpolant()), rule.has_dashpot()),
-        None => (1, false),
-    }
+    let rule = state.history.rule();
+    (rule.order(settings.adaptive_interpolant()), rule.has_dashpot())
 }
 
 /// The end of a step of about `wanted` towards `stop`: `stop` if this is near, or halfway if the remainder would be

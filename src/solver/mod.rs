@@ -1,4 +1,4 @@
-//! The contact problem of one step, and two solvers for it.
+//! The contact problem of one step, and its solver.
 
 mod active_set;
 mod bands;
@@ -7,7 +7,6 @@ mod contact_set;
 mod extension;
 mod outcome;
 mod passes;
-mod polonsky_keer;
 mod preconditioner;
 mod problem;
 mod resting_position;
@@ -20,7 +19,6 @@ pub(crate) use active_set::ActiveSet;
 pub(crate) use bands::Bands;
 pub(crate) use extension::{Extension, HaloExchange, HaloRows};
 pub(crate) use outcome::{Outcome, PENETRATION_SLACK};
-pub(crate) use polonsky_keer::PolonskyKeer;
 pub(crate) use problem::{Counts, Problem, Solution, Solve, Stop};
 pub(crate) use rigid_motion::{Freedom, Gram, ModeCoefficients, Modes, RigidMotion, dot};
 pub(crate) use stiffness::{FLAT_PUNCH_TOLERANCE, flat_punch};

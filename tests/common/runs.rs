@@ -63,7 +63,6 @@ pub fn scenes() -> Vec<(&'static str, Build, Step)> {
     let in_turn = |contact: &mut ViscoelasticContact, k: u32| {
         contact.step(0.02, [Load::force(0.2), Load::force(0.1 + 0.01 * f64::from(k % 4))]).unwrap()
     };
-    let direct = whole.with_time_rule(TimeRule::Backward);
     let layer = move || {
         let layer = Layer::bonded_to_rigid(1.0e-3, 0.5).unwrap();
         let kernel = Arc::new(InfluenceKernel::layer(&grid(), layer).unwrap());
@@ -86,13 +85,6 @@ pub fn scenes() -> Vec<(&'static str, Build, Step)> {
         ("window", Box::new(move || sphere_on(wide(), three_times(), Settings::default())), Box::new(wandering)),
         ("folded", Box::new(with(Settings::default().with_window(false))), Box::new(wandering)),
         ("whole", Box::new(with(whole)), Box::new(wandering)),
-        ("Polonsky-Keer", Box::new(with(whole.with_solver(Solver::PolonskyKeer))), Box::new(wandering)),
-        (
-            "direct sum",
-            Box::new(with(direct)),
-            Box::new(|c, k| c.step(0.02, Load::force(0.3 + 0.01 * f64::from(k))).unwrap()),
-        ),
-        ("paper", Box::new(with(Settings::paper())), Box::new(wandering)),
         ("layer", Box::new(layer), Box::new(wandering)),
         ("warming", Box::new(warming), Box::new(wandering)),
         (

@@ -1,7 +1,7 @@
-//! Checkpoints of changed content: the length and the checksum that belong to it.
+//! Checkpoints of changed content: the checksum that belongs to it.
 
-/// Where the checksum is: after mark, version and length, before the state.
-pub const CHECKSUM: std::ops::Range<usize> = 20..24;
+/// Where the checksum is: after mark and version, before the contents.
+pub const CHECKSUM: std::ops::Range<usize> = 12..16;
 
 /// CRC-32 of IEEE 802.3, bit by bit.
 fn crc(bytes: impl Iterator<Item = u8>) -> u32 {
@@ -10,12 +10,10 @@ fn crc(bytes: impl Iterator<Item = u8>) -> u32 {
     })
 }
 
-/// Writes length and checksum into a file that is long enough for both.
+/// Writes the checksum into a file that is long enough for it.
 pub fn seal(file: &mut [u8]) {
     if file.len() >= CHECKSUM.end {
-        let length = (file.len() - CHECKSUM.end) as u64;
-        file[12..CHECKSUM.start].copy_from_slice(&length.to_le_bytes());
-        let right = crc(file[..CHECKSUM.start].iter().chain(&file[CHECKSUM.end..]).copied());
+        let right = crc(file[CHECKSUM.end..].iter().copied());
         file[CHECKSUM].copy_from_slice(&right.to_le_bytes());
     }
 }

@@ -29,7 +29,7 @@ fn build(scene: usize) -> viscocontact::Result<ViscoelasticContact> {
     match scene {
         0 => builder().material(polymer).build(),
         1 => builder().material(polymer).settings(whole).build(),
-        2 => builder().material(polymer).settings(whole.with_time_rule(TimeRule::Backward)).build(),
+        2 => builder().material(polymer).settings(whole.with_time_rule(TimeRule::ExponentialLinear)).build(),
         3 => builder().material(polymer).settings(whole.with_frame(Frame::Indenter)).build(),
         // a past of jumps alone, and one of steps too
         4 | 5 => {

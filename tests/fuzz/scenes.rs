@@ -27,17 +27,13 @@ struct Scale {
 
 fn settings(source: &mut Source) -> Settings {
     let frame = if source.chance(0.2) { Frame::Indenter } else { Frame::Bodies };
-    use TimeRule::{Backward, Exponential, Rectangle};
-    let rules = [Exponential, Exponential, Exponential, Rectangle, Rectangle, Backward];
-    let basis = if source.chance(0.2) { Settings::paper() } else { Settings::default() };
-    basis
+    let rules = [TimeRule::Exponential, TimeRule::Exponential, TimeRule::ExponentialLinear];
+    Settings::default()
         .with_tolerance(source.scale(1e-10, 1e-2))
         .with_max_iterations(source.choose(&[1, 3, 30, 200, 200, 200, 0]))
-        .with_solver(source.choose(&[Solver::ActiveSet, Solver::ActiveSet, Solver::PolonskyKeer]))
-        .with_time_rule(if frame == Frame::Indenter { TimeRule::Exponential } else { source.choose(&rules) })
+        .with_time_rule(source.choose(&rules))
         .with_edge(source.choose(&[Edge::Allow, Edge::Allow, Edge::Refuse]))
         .with_series_tolerance(source.scale(1e-4, 1e-1))
-        .with_history_limit(source.choose(&[2 << 30, 2 << 30, 2 << 30, 4000]))
         .with_symmetry(source.chance(0.7))
         .with_window(source.chance(0.7))
         .with_frame(frame)

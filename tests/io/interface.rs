@@ -203,7 +203,7 @@ fn metadata_are_values() {
     let contact = sphere_on(Grid::square(16, 4.0e-3).unwrap(), polymer.against(steel), Settings::default());
     let json = Metadata::new("values").json(&contact);
     for part in [
-        r#""settings": {"tolerance": 1e-6, "max_iterations": 1000, "solver": "ActiveSet""#,
+        r#""settings": {"tolerance": 1e-6, "max_iterations": 1000, "time_rule": "Exponential""#,
         r#""material": [{"bulk_modulus": 3000000000.0, "contact_creep": {"glassy": "#,
         r#"{"poisson": 0.3, "contact_creep": {"glassy": "#,
         r#""fluidity": 0.0, "terms": []}"#,

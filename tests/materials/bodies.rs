@@ -1,4 +1,4 @@
-//! What bodies are made of, in a contact: elastic bulk, two bodies, fitted series, direct sums.
+//! What bodies are made of, in a contact: elastic bulk, two bodies, fitted series.
 
 use super::tension::carson;
 use crate::common::RADIUS;
@@ -130,20 +130,6 @@ fn a_history_and_its_end_give_the_times() {
         let refused = field(builder(16, 0.5e-6).material(closure()).times_of(&load, end).build());
         assert!(refused.ends_with("time of a series"), "{end}: {refused}");
     }
-}
-
-#[test]
-fn direct_sums_keep_within_their_memory() {
-    // by symmetry a quarter of the cells is computed
-    let settings = Settings::default().with_time_rule(TimeRule::Backward).with_history_limit(5 * 16 * 16 * 8);
-    let closure = Material::incompressible(FnRheology::new(|t: f64| 1.0e-6 * (1.0 + t)));
-    let mut contact = builder(32, 2.0e-6).material(closure).settings(settings).build().unwrap();
-    for _ in 0..5 {
-        contact.step(0.1, Load::force(FORCE)).unwrap();
-    }
-    let error = contact.step(0.1, Load::force(FORCE)).unwrap_err();
-    assert!(matches!(error, Error::Step(StepError::HistoryFull { steps: 5, limit: 10_240, .. })), "{error}");
-    assert_abs_diff_eq!(contact.time(), 0.5, epsilon = 1e-15);
 }
 
 /// Ends of the range of the fractional Zener body: its limits, or refused by name.

@@ -90,12 +90,11 @@ proptest! {
         assert_same("approach", &[one.contact.approach()], &[other.approach() - wider], scale, 1e-8)?;
     }
 
-    /// Both solvers, with and without windows and symmetry.
+    /// With and without windows and symmetry.
     #[test]
     fn settings_choose_the_work_not_the_answer(scene in scenarios()) {
         let one = end(&scene, tight());
         let others = [
-            tight().with_solver(Solver::PolonskyKeer).with_max_iterations(5000),
             tight().with_window(false),
             tight().with_symmetry(false),
         ];

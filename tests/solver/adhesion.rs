@@ -91,8 +91,6 @@ fn what_is_not_covered_is_refused() {
     not_covered(
         [
             set(Settings::default().with_frame(Frame::Indenter)),
-            set(Settings::default().with_solver(Solver::PolonskyKeer)),
-            set(Settings::default().with_time_rule(TimeRule::Rectangle)),
             builder(1.0).another_body(&Sphere::new(1.0).unwrap()).build().err(),
             builder(1.0).build().unwrap().step(1.0, free).err(),
             builder(1.0).build().unwrap().fields().stress().err(),

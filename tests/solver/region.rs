@@ -5,19 +5,13 @@ use crate::common::{RADIUS, builder_of, elastic, maxwell};
 use viscocontact::prelude::*;
 
 /// The same scene with and without what spares cells.
-fn pair(
-    cells: [usize; 2],
-    side: f64,
-    geometry: &dyn Geometry,
-    (material, time_rule): &(Material, TimeRule),
-) -> [ViscoelasticContact; 2] {
+fn pair(cells: [usize; 2], side: f64, geometry: &dyn Geometry, material: &Material) -> [ViscoelasticContact; 2] {
     [true, false].map(|sparing| {
         let [n1, n2] = cells;
         let settings = Settings::default()
             .with_tolerance(1e-11)
             .with_symmetry(sparing)
             .with_window(sparing)
-            .with_time_rule(*time_rule)
             .with_edge(Edge::Allow);
         builder_of(geometry, Grid::new(cells, [side, side * n2 as f64 / n1 as f64]).unwrap(), material.clone())
             .times(1e-3..=1e5)
@@ -60,18 +54,11 @@ fn assert_same(contacts: &[ViscoelasticContact; 2], tolerance: f64, when: &str) 
     }
 }
 
-/// Bodies, of a series that is exact or fitted, and how the integral over the past is taken.
-fn bodies() -> [(Material, TimeRule); 6] {
+/// Bodies, of a series that is exact or fitted.
+fn bodies() -> [Material; 4] {
     let two = GeneralizedMaxwell::new(1.0e5, &[(1.0e6, 0.1), (5.0e5, 3.0)]).unwrap();
-    let closure = || Material::incompressible(FnRheology::new(|t: f64| 1.0e-6 * (1.0 + t.powf(0.4))));
-    [
-        (maxwell(), TimeRule::Exponential),
-        (Material::incompressible(two), TimeRule::Exponential),
-        (elastic(), TimeRule::Exponential),
-        (closure(), TimeRule::Exponential),
-        (closure(), TimeRule::Backward),
-        (closure(), TimeRule::Rectangle),
-    ]
+    let closure = FnRheology::new(|t: f64| 1.0e-6 * (1.0 + t.powf(0.4)));
+    [maxwell(), Material::incompressible(two), elastic(), Material::incompressible(closure)]
 }
 
 /// Loads and shapes that were symmetric, and are no longer.

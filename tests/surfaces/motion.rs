@@ -194,13 +194,6 @@ fn steps_that_fail_leave_the_indenter_where_it_was() {
     moving.step_over([1, 0], 0.01, load).unwrap();
     twin.step_over([1, 0], 0.01, load).unwrap();
     assert!(apart(moving.pressure(), twin.pressure()) < 1e-6);
-
-    let direct = Settings::default().with_frame(Frame::Indenter).with_time_rule(TimeRule::Backward);
-    let built = builder(&grid, &sphere(), Frame::Indenter).settings(direct).build();
-    not_covered([(built.err(), "a direct sum is not covered on a grid that is fixed to the indenter")]);
-    let closure = Material::incompressible(FnRheology::new(|t: f64| 1e-6 * (1.0 + t.powf(0.3))));
-    let built = builder(&grid, &sphere(), Frame::Indenter).material(closure).build();
-    refused([(built.err(), "needs an exponential series")]);
 }
 
 /// A step along a path costs what a step in place does, and a guess that goes on is worth having.

@@ -54,29 +54,17 @@ fn area_is_proportional_to_small_loads() {
     assert!(spread < 0.15, "{spread}");
 }
 
-/// Half of the surface in contact: what a solve takes, and that the paper's solver takes many times as much.
+/// Half of the surface in contact: what a solve takes. Nothing is padded: a preconditioner costs as much as a convolution.
 #[test]
-fn half_full_contact_takes_a_quarter_of_the_other_solvers_work() {
+fn half_full_contact_takes_few_convolutions() {
     let (grid, shape) = rough(256, 8.0, 1);
-    let work = |solver| {
-        let mut contact = pressed(&grid, &shape, elastic(), Settings::default().with_solver(solver));
-        let report = contact.step(0.0, Load::force(force(0.27))).unwrap();
-        assert!((0.47..0.53).contains(&share_of_cells(&contact)), "{}", share_of_cells(&contact));
-        println!(
-            "{solver:?}: {} convolutions, {} preconditioners",
-            report.convolutions, report.preconditioner_applications
-        );
-        [report.convolutions, report.preconditioner_applications]
-    };
-    // nothing is padded: a preconditioner costs as much as a convolution
-    let (active_set, polonsky_keer) = (work(Solver::ActiveSet), work(Solver::PolonskyKeer));
-    let [half, most] = [active_set, polonsky_keer];
-    let text =
-        format!("{} convolutions and {} preconditioners; Polonsky–Keer {} convolutions", half[0], half[1], most[0]);
+    let mut contact = pressed(&grid, &shape, elastic(), Settings::default());
+    let report = contact.step(0.0, Load::force(force(0.27))).unwrap();
+    assert!((0.47..0.53).contains(&share_of_cells(&contact)), "{}", share_of_cells(&contact));
+    let [convolutions, preconditioners] = [report.convolutions, report.preconditioner_applications];
+    let text = format!("{convolutions} convolutions and {preconditioners} preconditioners");
     figures::figure("half of the cells in contact", &text).unwrap();
-    let [active_set, polonsky_keer] =
-        [half, most].map(|[convolutions, preconditioners]| convolutions + preconditioners);
-    assert!(active_set <= 60 && 4 * active_set <= polonsky_keer, "{active_set} {polonsky_keer}");
+    assert!(convolutions + preconditioners <= 60, "{text}");
 }
 
 /// Nearly all of the surface in contact, where many pressures are close to zero, far from the mean.

@@ -49,18 +49,15 @@ fn random_scene(number: u64) -> Scene {
     } else {
         builder = builder.geometry(&ball(0.0, 1.0));
     }
-    let (rule, solver) = (
-        if draws.chance(0.5) { TimeRule::Exponential } else { TimeRule::Backward },
-        if draws.chance(0.7) { Solver::ActiveSet } else { Solver::PolonskyKeer },
-    );
+    let rule = if draws.chance(0.5) { TimeRule::Exponential } else { TimeRule::ExponentialLinear };
     let tolerance = draws.power_of_ten(-10.0, -5.0);
     let terms: Vec<(f64, f64)> = (0..3).map(|_| (draws.between(0.05, 0.5), draws.power_of_ten(-1.0, 1.0))).collect();
     let body = GeneralizedMaxwell::new(draws.between(0.1, 0.5), &terms).unwrap();
     let material = Material::constant_poisson(body, if kind == 5 { 0.4 } else { 0.5 }).unwrap();
     let settings = Settings::default().with_edge(Edge::Allow).with_tolerance(tolerance);
-    let settings = settings.with_time_rule(rule).with_solver(solver).with_window(draws.chance(0.5));
+    let settings = settings.with_time_rule(rule).with_window(draws.chance(0.5));
     let contact = builder.material(material).kernel(kernel.unwrap()).settings(settings).build().unwrap();
-    Scene { name: format!("{name} {number}, {rule:?}, {solver:?}"), contact, tilts, depth, tolerance }
+    Scene { name: format!("{name} {number}, {rule:?}"), contact, tilts, depth, tolerance }
 }
 
 /// Approach of the point about which a body tilts.

@@ -145,7 +145,7 @@ fn steps_are_those_of_the_reduced_time_on_random_scenes() {
         let stretched: Vec<(f64, f64)> = table.iter().map(|&(time, kelvin)| (scale * time, kelvin)).collect();
         let history = TemperatureHistory::table(law, &stretched).unwrap();
         let build = || builder_on(grid(16), body.material.clone()).times(1e-9 * body.until..=2.0 * body.until);
-        let rule = if draws.chance(0.2) { TimeRule::Backward } else { TimeRule::Exponential };
+        let rule = if draws.chance(0.2) { TimeRule::ExponentialLinear } else { TimeRule::Exponential };
         let settings = settings().with_edge(Edge::Allow).with_time_rule(rule);
         let mut own = build().temperature(history.clone()).settings(settings).build().unwrap();
         let mut plain = build().settings(settings).build().unwrap();

@@ -1,6 +1,6 @@
 //! How each time rule converges, and what it survives.
 
-use crate::common::{StepLoadedSphere, builder_of, contact_of, maxwell, sphere_on, zener};
+use crate::common::{StepLoadedSphere, builder_of, contact_of, maxwell, zener};
 use approx::assert_abs_diff_eq;
 use viscocontact::prelude::*;
 
@@ -72,20 +72,11 @@ fn the_order_is_that_of_the_rule_on_every_body() {
     }
 }
 
-#[test]
-fn the_rectangle_and_backward_rules_are_first_order() {
-    for rule in [TimeRule::Rectangle, TimeRule::Backward] {
-        for fall in falls(&StepLoadedSphere::maxwell(), rule) {
-            assert!((1.8..2.3).contains(&fall), "{rule:?}: {fall}");
-        }
-    }
-}
-
 /// A jump is elastic whatever came before, for every rule.
 #[test]
 fn a_step_of_length_zero_is_elastic() {
     let scene = StepLoadedSphere::maxwell();
-    for time_rule in [TimeRule::Exponential, TimeRule::Rectangle, TimeRule::Backward] {
+    for time_rule in [TimeRule::Exponential, TimeRule::ExponentialLinear] {
         let settings = Settings::default().with_tolerance(1e-10).with_time_rule(time_rule);
         let mut contact = scene.contact(32, settings).unwrap();
         for load in [0.2, 0.7, 1.0] {
@@ -104,29 +95,7 @@ fn a_step_of_length_zero_is_elastic() {
     }
 }
 
-/// Beyond Δ = 2τ the paper's rule loses the very centre of a Maxwell contact, which in truth stays
-/// pressed for ever; the other rules keep it and let it decay.
-#[test]
-fn the_rectangle_rule_is_unstable_for_long_steps() {
-    let central = |time_rule| {
-        let mut contact =
-            sphere_on(Grid::square(48, 6.0e-3).unwrap(), maxwell(), Settings::default().with_time_rule(time_rule));
-        contact.step(0.0, Load::force(0.2)).unwrap();
-        let mut values = Vec::new();
-        for _ in 0..5 {
-            contact.step(2.5, Load::force(0.2)).unwrap();
-            values.push(contact.pressure()[24 * 48 + 24]);
-        }
-        values
-    };
-    assert_eq!(central(TimeRule::Rectangle), [0.0; 5]);
-    for rule in [TimeRule::Backward, TimeRule::Exponential] {
-        let values = central(rule);
-        assert!(values[4] > 0.0 && values.windows(2).all(|pair| pair[1] < pair[0]), "{rule:?}: {values:?}");
-    }
-}
-
-/// A closure J(t) goes through the direct sum and agrees with the series it samples.
+/// A closure J(t) agrees with the series it samples.
 #[test]
 fn a_closure_matches_its_series() {
     let scene = StepLoadedSphere::maxwell();
@@ -142,7 +111,7 @@ fn a_closure_matches_its_series() {
         }
         contact.pressure().to_vec()
     };
-    for time_rule in [TimeRule::Backward, TimeRule::Exponential] {
+    for time_rule in [TimeRule::ExponentialLinear, TimeRule::Exponential] {
         let series = run(scene.material.clone(), time_rule);
         let closure = run(Material::incompressible(FnRheology::new(|t| 1.0e-6 * (1.0 + t))), time_rule);
         let peak = series.iter().copied().fold(0.0, f64::max);
@@ -150,22 +119,4 @@ fn a_closure_matches_its_series() {
             assert!((a - b).abs() < 1e-7 * peak, "{time_rule:?}");
         }
     }
-}
-
-/// Late times: the ages of the direct sum are differences of large numbers. After a rest the steps are those from the start.
-#[test]
-fn direct_sums_work_at_late_times() {
-    let pressed = |rest: f64| {
-        let body = Material::incompressible(Maxwell::with_time(1.0e6, 0.01).unwrap());
-        let settings = Settings::default().with_tolerance(1e-11).with_time_rule(TimeRule::Backward);
-        let mut contact = sphere_on(Grid::square(16, 4.0e-3).unwrap(), body, settings);
-        contact.step(rest, Load::force(0.0)).unwrap();
-        contact.step(0.0, Load::force(1.0e-3)).unwrap();
-        for k in 1..40 {
-            contact.step(1.0e-3 * (0.37 * f64::from(k)).fract(), Load::force(2.0e-3)).unwrap();
-        }
-        (contact.pressure().to_vec(), contact.fields().max_pressure())
-    };
-    let ((late, _), (early, peak)) = (pressed(1.0e3), pressed(0.0));
-    assert!(peak > 0.0 && late.iter().zip(&early).all(|(late, early)| (late - early).abs() < 1e-7 * peak));
 }

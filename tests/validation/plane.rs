@@ -100,17 +100,15 @@ fn a_cylinder_in_line_contact_is_hertzs() {
 #[test]
 fn flat_on_flat_is_solved_and_let_go() {
     for cells in [[16, 16], [15, 9], [64, 1], [7, 1]] {
-        for solver in [Solver::ActiveSet, Solver::PolonskyKeer] {
-            for ripple in [0.0, 1e-15] {
-                let grid = Grid::new(cells, [1.0, 1.0]).unwrap();
-                let shape = FnGeometry::new(move |x1, _| ripple * (2.0 * PI * x1).cos());
-                let settings = Settings::default().with_solver(solver);
-                let mut contact = contact(&grid, InfluenceKernel::periodic(&grid).unwrap(), &shape, settings);
-                contact.step(0.0, Load::force(1.0)).unwrap();
-                assert!(contact.pressure().iter().all(|p| (p - 1.0).abs() < 0.05), "{cells:?} {solver:?}");
-                contact.step(0.0, Load::approach(-1.0e-6)).unwrap();
-                assert_eq!(contact.contact_cells(), 0);
-            }
+        for ripple in [0.0, 1e-15] {
+            let grid = Grid::new(cells, [1.0, 1.0]).unwrap();
+            let shape = FnGeometry::new(move |x1, _| ripple * (2.0 * PI * x1).cos());
+            let kernel = InfluenceKernel::periodic(&grid).unwrap();
+            let mut contact = contact(&grid, kernel, &shape, Settings::default());
+            contact.step(0.0, Load::force(1.0)).unwrap();
+            assert!(contact.pressure().iter().all(|p| (p - 1.0).abs() < 0.05), "{cells:?}");
+            contact.step(0.0, Load::approach(-1.0e-6)).unwrap();
+            assert_eq!(contact.contact_cells(), 0);
         }
     }
     let grid = Grid::square(16, 1.0).unwrap();

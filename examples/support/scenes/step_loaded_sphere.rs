@@ -1,4 +1,4 @@
-//! The source paper's scene, shared by tests, benches and examples.
+//! The source paper's scene, by the crate and by the paper's own algorithm; shared by tests, benches and examples.
 #![allow(dead_code, reason = "each user takes what it needs")]
 
 use std::collections::HashMap;
@@ -6,6 +6,7 @@ use std::collections::HashMap;
 use viscocontact::Result;
 use viscocontact::analytic::GrowingSphere;
 use viscocontact::prelude::*;
+use viscocontact_paper as paper;
 
 /// The source paper's scene: a sphere under a force applied at t = 0 and held, on a half-space.
 #[derive(Debug, Clone)]
@@ -78,6 +79,20 @@ impl StepLoadedSphere {
             work += report.convolution_equivalents();
         }
         Ok((contact, work / steps as f64))
+    }
+
+    /// The same by the source paper's own algorithm: its last state, and the convolutions of the past and of contact problems.
+    pub fn literally(&self, cells: usize, steps: usize) -> Result<(paper::State, [usize; 2])> {
+        let grid = paper::Grid { cells, side: self.grid(cells)?.spacing()[0] };
+        let square = |k: usize| grid.center(k).map(|x| x * x).iter().sum::<f64>();
+        let gap = (0..grid.len()).map(|k| square(k) / (2.0 * self.radius)).collect();
+        let creep = |t: f64| self.material.contact_compliance(t);
+        let mut contact = paper::History::new(paper::Influence::new(grid), &creep, gap, 1e-7);
+        for step in 0..=steps {
+            let time = self.duration * step as f64 / steps as f64;
+            assert!(contact.step(time, paper::Load { force: self.force, at: None }), "step {step} does not converge");
+        }
+        Ok((contact.state, contact.convolutions))
     }
 }
 

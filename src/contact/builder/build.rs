@@ -10,17 +10,15 @@ use crate::contact::builder::shared_gap::SharedGap;
 #[cfg(feature = "checkpoint")]
 use crate::contact::checkpoint::built::Built;
 use crate::contact::read::limits::Limits;
-use crate::contact::{
-    Builder, Computation, Frame, Memory, Scene, Settings, Solver, State, TimeRule, ViscoelasticContact,
-};
+use crate::contact::{Builder, Computation, Frame, Memory, Scene, Settings, State, ViscoelasticContact};
 use crate::elastic::ElasticContact;
 use crate::equilibrium::ground::check_bodies;
 use crate::equilibrium::indenter::even_axes_of;
 use crate::equilibrium::{Ground, Indenter, Region};
-use crate::error::{AdhesionError, Error, Result, Special, StepError, coverage};
+use crate::error::{AdhesionError, Error, Result, Special, coverage};
 use crate::error::{length, positive, unless_failed};
 use crate::geometry::{Gap, Missed};
-use crate::hereditary::{History, Weighting};
+use crate::hereditary::History;
 use crate::kernel::Layer;
 use crate::parallel::{Ranks, Rows};
 use crate::rheology::Material;
@@ -31,8 +29,7 @@ impl Builder {
     /// # Errors
     /// If geometry or material is missing, a gap is NaN or −∞ or none is finite, a rheology is known until NaN, a
     /// setting is out of range, the kernel was made for another grid or cannot be made for its cells
-    /// ([`InfluenceKernel::half_space`](crate::InfluenceKernel::half_space)), or the rectangle rule was chosen for a
-    /// rheology without elastic response.
+    /// ([`InfluenceKernel::half_space`](crate::InfluenceKernel::half_space)).
     ///
     /// If the kernel belongs to a layer, and the material has another Poisson's ratio, or one that is not constant,
     /// or a counter body deforms ([`KernelError::LayerMaterial`](crate::KernelError::LayerMaterial)).
@@ -104,11 +101,9 @@ impl Builder {
 
     /// Rejects a special scene that does not cover one of its parts.
     pub(crate) fn is_covered(&self, special: Special) -> Result<()> {
-        let Settings { solver, time_rule, frame, .. } = self.settings;
+        let frame = self.settings.frame;
         let parts = [
             (self.gaps.len() > 1, coverage::SEVERAL_BODIES),
-            (solver != Solver::ActiveSet, coverage::POLONSKY_KEER),
-            (!time_rule.needs_series(), coverage::DIRECT_SUM),
             (frame != Frame::Bodies, coverage::FRAME_OF_INDENTER),
             (self.ranks.is_some(), coverage::SHARED_ROWS),
             (self.attraction.is_some(), coverage::ATTRACTED),
@@ -193,14 +188,12 @@ impl Builder {
         if let Some(layer) = kernel.layer_of() {
             Layer::check_material(layer.poisson_ratio(), &material.poisson_ratios().collect::<Vec<_>>())?;
         }
-        if let Some(times) = &self.times
-            && self.settings.time_rule.needs_series()
-        {
+        if let Some(times) = &self.times {
             material = times.fit(&material, self.temperature.as_ref(), self.settings.series_tolerance)?;
         }
         let is_left = kernel.periodic_axes() != [true; 2] && self.settings.frame == Frame::Indenter;
         let creep = if is_left { material.contact_spectrum()? } else { None };
-        let history = history_by(&self.settings, &material, kernel.periodic_axes())?;
+        let history = history_in(self.settings.frame, &material, kernel.periodic_axes())?;
         let softening =
             self.attraction.as_deref().map(|law| resolved_softening(law, &material, &self.grid)).transpose()?;
         let attraction = self.attraction.clone();
@@ -294,21 +287,12 @@ fn resolved_softening(law: &dyn Attraction, material: &Material, grid: &Grid) ->
     Err(AdhesionError::ZoneNotResolved { cells, least: LEAST_ZONE, spacing, range }.into())
 }
 
-/// The history of bodies of `material` by the time rule of the settings, on no cells yet.
-fn history_by(settings: &Settings, material: &Material, periodic: [bool; 2]) -> Result<History> {
-    let glassy = material.checked_compliance(0.0, (0.0, 0.0))?;
-    match settings.time_rule {
-        TimeRule::Exponential | TimeRule::ExponentialLinear => {
-            let creep = material.spectrum_for("a contact")?;
-            Ok(match settings.frame {
-                Frame::Bodies => History::exponential(&creep),
-                Frame::Indenter => History::moving_frame(&creep, periodic),
-            })
-        }
-        TimeRule::Rectangle if glassy == 0.0 => {
-            Err(Error::Step(StepError::NoElasticResponse { time: 0.0, what: "the rectangle rule" }))
-        }
-        TimeRule::Rectangle => Ok(History::direct_sum(Weighting::End)),
-        TimeRule::Backward => Ok(History::direct_sum(Weighting::Start)),
-    }
+/// The history of bodies of `material` in a frame, on no cells yet.
+fn history_in(frame: Frame, material: &Material, periodic: [bool; 2]) -> Result<History> {
+    material.checked_compliance(0.0, (0.0, 0.0))?;
+    let creep = material.spectrum_for("a contact")?;
+    Ok(match frame {
+        Frame::Bodies => History::exponential(&creep),
+        Frame::Indenter => History::moving_frame(&creep, periodic),
+    })
 }

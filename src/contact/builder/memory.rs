@@ -19,10 +19,10 @@ use crate::memory;
 /// | | |
 /// |---|---|
 /// | state and trial step | 73 |
-/// | history | 8 per relaxation time, and 8 for the change in the last step (16 without elastic response, none of an elastic body); with [`Frame::Indenter`](crate::contact::Frame::Indenter) 40, 16 per relaxation time and 24 (48, none); direct sums: 8 per step taken |
+/// | history | 8 per relaxation time, and 8 for the change in the last step (16 without elastic response, none of an elastic body); with [`Frame::Indenter`](crate::contact::Frame::Indenter) 40, 16 per relaxation time and 24 (48, none) |
 /// | displacement outside a window | 16, and the history again |
-/// | solver | 29, as [`Solver::PolonskyKeer`](crate::contact::Solver::PolonskyKeer); for each body 0.02 more |
-/// | its preconditioner | 7.4, none of [`Solver::PolonskyKeer`](crate::contact::Solver::PolonskyKeer): a quarter of a spectrum of the grid without padding, 2, and the extension of the residual, 5.4, and 12 per column for each thread |
+/// | solver | 29; for each body 0.02 more |
+/// | its preconditioner | 7.4: a quarter of a spectrum of the grid without padding, 2, and the extension of the residual, 5.4, and 12 per column for each thread |
 /// | kernel | 25: a quarter of the padded spectrum, 8, and work space, 17 |
 /// | transforms on several threads | 16 more |
 /// | attraction between surfaces | 68: its traction at both ends of a step and in the trial, 24, what its steps work in, 40, and the near field of the kernel and its inverse, 4, and 400 to 480 bytes a column for each thread |
@@ -55,9 +55,6 @@ pub struct Memory {
     /// Bytes of the work space of the kernel, and of its spectrum, unless another contact with the same kernel has made
     /// that already.
     pub kernel: u64,
-    /// Bytes that each further step adds: fields of direct sums, up to
-    /// [`Settings::history_limit`](crate::contact::Settings::history_limit).
-    pub each_step: u64,
 }
 
 impl Memory {
@@ -72,13 +69,12 @@ impl Memory {
 /// The memory in MB, in total and by part.
 impl fmt::Display for Memory {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Memory { computed_cells, grid, state, history, solver, kernel, each_step } = *self;
+        let Memory { computed_cells, grid, state, history, solver, kernel } = *self;
         let mb = |bytes: u64| bytes as f64 * 1e-6;
         let [total, grid, state, history, solver, kernel] =
             [self.total(), grid, state, history, solver, kernel].map(mb);
         write!(f, "{total:.1} MB with {computed_cells} cells computed (gap and pressure on the grid {grid:.1}, ")?;
-        write!(f, "state {state:.1}, history {history:.1}, solver {solver:.1}, kernel {kernel:.1})")?;
-        if each_step > 0 { write!(f, ", {:.1} MB more with each step", mb(each_step)) } else { Ok(()) }
+        write!(f, "state {state:.1}, history {history:.1}, solver {solver:.1}, kernel {kernel:.1})")
     }
 }
 
@@ -102,7 +98,6 @@ impl Scene {
             history: of_cells(of_history),
             solver,
             kernel,
-            each_step: if history.grows() { of_cells(8) } else { 0 },
         }
     }
 

@@ -145,7 +145,7 @@ impl State {
 
     /// Returns to the start of the last step, which the history must still keep.
     pub(crate) fn roll_back(&mut self) {
-        self.history.roll_back(!self.is_undisturbed());
+        self.history.roll_back();
         self.held.current.clone_from(&self.previous);
         self.clock = self.start.clock;
         self.held.loads.copy_from_slice(&self.start.loads);

@@ -58,7 +58,7 @@ impl ViscoelasticContact {
     }
 
     /// [`ViscoelasticContact::snapshot`] into one made before. Allocates nothing while the region that is computed stays the
-    /// same and no direct sum grows.
+    /// same.
     pub fn snapshot_into(&self, snapshot: &mut Snapshot) {
         if Arc::ptr_eq(&snapshot.scene, &self.scene) {
             snapshot.state.clone_from(&self.computation.state);
@@ -69,7 +69,7 @@ impl ViscoelasticContact {
 
     /// Goes back to a state, with the indenter where it was then: the steps that follow are the same as they were,
     /// bitwise. A run of adaptive steps ([`ViscoelasticContact::follow`]) begins anew, with steps of its own.
-    /// Allocates nothing while the region that is computed stays the same and no direct sum grows.
+    /// Allocates nothing while the region that is computed stays the same.
     ///
     /// # Errors
     /// If the snapshot was made of another contact; a contact and its clones may exchange theirs.

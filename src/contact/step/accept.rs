@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::contact::read::limits::LONG_STEP;
 use crate::contact::{Computation, Scene, Step};
-use crate::equilibrium::{Figures, TimeRule, Warnings};
+use crate::equilibrium::{Figures, Warnings};
 use crate::extent::Extent;
 
 impl Computation {
@@ -14,8 +14,7 @@ impl Computation {
         let Computation { state, trial, .. } = self;
         let interval = step.interval;
         let touched = !state.is_undisturbed() || contact_cells > 0 || state.attracts;
-        let potentials = [&state.held.current.solution, &trial.solution].map(|solution| &solution.potential[..]);
-        state.history.commit(interval, potentials, touched);
+        state.history.commit(interval);
         if !Arc::ptr_eq(&step.indenter, &state.held.indenter) {
             // where the indenter was within the step is not known
             state.history.forget_start();
@@ -45,16 +44,12 @@ pub(super) fn collect_warnings(
     time_error: Option<f64>,
 ) -> Warnings {
     let Computation { state, attracted, .. } = computation;
-    let (dt, material) = (state.clock.last_dt, &scene.material);
+    let dt = state.clock.last_dt;
     let of_material =
         if state.is_undisturbed() { Warnings::empty() } else { scene.limits.warnings(state.clock.age(), dt) };
-    // the rectangle rule oscillates where the bodies creep by more in a step than they yield at once
-    let oscillates = scene.ground.settings.time_rule == TimeRule::Rectangle
-        && material.contact_compliance(dt) > 2.0 * material.contact_compliance(0.0);
     let reasons = [
         (Warnings::COARSE_ZONE, figures.cells_in_zone.is_some()),
         (Warnings::BEYOND_EDGE, figures.beyond_edge.is_some()),
-        (Warnings::RINGS, oscillates),
         (Warnings::LONG_STEP, time_error > Some(LONG_STEP)),
         (Warnings::JUMP, attracted.as_ref().is_some_and(|own| own.report.jumped)),
     ];

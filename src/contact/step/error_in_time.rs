@@ -62,10 +62,6 @@ fn first_touch(tried: &Computation, gap: &[f64]) -> f64 {
     tried.state.held.region.rows().least(surface.fold(f64::INFINITY, f64::min))
 }
 
-/// A direct sum assigns an increment to one end of its step: on average the response is half a step too early or too
-/// late.
-const SHARE_OF_DIRECT_SUM: f64 = 0.5;
-
 /// A body that comes back to a surface, however slowly, meets it with the modulus of this time, in times that matter.
 pub(crate) const SHORTEST_TOUCH: f64 = 10.0;
 
@@ -89,22 +85,6 @@ pub(crate) fn error_in_time(scene: &Scene, tried: &Computation, step: &Step<'_>,
     let greatest = [0, 1].map(|which| expected[which].max(state.greatest[which]));
     let least = least_sizes(state, outlook);
     let compliance = |t: f64| scene.material.contact_compliance(t);
-    let (pressure, before) = (&trial.solution.pressure, &state.held.current.solution);
-    if !scene.ground.settings.time_rule.needs_series() {
-        let (mut change, mut size, mut sum) = (0.0, 0.0, 0.0);
-        // products of great pressures and displacements would overflow; no ranks share out direct sums
-        let most = sum::greatest(pressure);
-        let fields =
-            pressure.iter().zip(state.history.trial()).zip(trial.solution.potential.iter().zip(&before.potential));
-        for ((&p, &u), (&v, &old)) in fields.filter(|((p, _), _)| **p > 0.0) {
-            let p = p / most;
-            (change, size, sum) = (change + p * (v - old).abs(), size + p * u.abs(), sum + p);
-        }
-        let creep = compliance(interval.dt) - compliance(0.0);
-        let over = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
-        let relative = SHARE_OF_DIRECT_SUM * creep * over(change, size.max(least[0] * sum));
-        return TimeError { relative, greatest: relative, sizes: [over(size, sum), 0.0], ..TimeError::default() };
-    }
     let age = state.clock.age();
     let (old, young) = (compliance(age + interval.dt), compliance(interval.dt));
     // so many steps cannot add up to more than as many times the error of one
@@ -113,7 +93,7 @@ pub(crate) fn error_in_time(scene: &Scene, tried: &Computation, step: &Step<'_>,
     // an attraction pulls at a surface whose displacement is free
     let attracted = scene.ground.attraction.is_some();
     let is_given = forces < trial.free.len() || attracted;
-    let c = state.history.exponential_rule().map_or(0.0, |rule| rule.compliance());
+    let c = state.history.rule().compliance();
     let of_force = if is_given { 1.0 } else { share_of_force(&scene.ground, &state.held, step.request(), c) };
     let matters = [if forces > 0 || attracted { 1.0 } else { 0.0 }, of_force];
     let gap = &tried.window.gap(&step.indenter).above;
@@ -156,7 +136,7 @@ const POWER: f64 = 2.0 / 3.0;
 /// contact, weighted by the pressure. The creep of what pressed the bodies before is taken to be followed.
 pub(super) fn first_step_error(scene: &Scene, tried: &Computation, step: &Step<'_>, least: f64) -> f64 {
     let (Computation { state, trial, .. }, dt) = (tried, step.interval.dt);
-    let Some([held, grown]) = state.history.exponential_rule().and_then(|rule| rule.first_step_responses()) else {
+    let Some([held, grown]) = state.history.rule().first_step_responses() else {
         return 0.0;
     };
     let jumped = state.clock.last_dt == 0.0;

@@ -85,7 +85,7 @@ impl ViscoelasticContact {
     /// the body has no elastic response for the pressure that the load needs, contact reaches the edge of the grid
     /// (unless
     /// [`Edge::Allow`](crate::contact::Edge::Allow)), the solver does not converge, a creep closure returns an impossible
-    /// value, the material is not known for so long a time, a direct sum has filled its memory, there is no memory
+    /// value, the material is not known for so long a time, there is no memory
     /// for the cells that the contact reaches ([`Error::OutOfMemory`]), or there is not one load per body. The
     /// contact is then unchanged, except that [`ViscoelasticContact::within_step`] has lost the start of the last
     /// step.
@@ -327,7 +327,7 @@ impl OnRegion for Computation {
 
         // u = u_old + c K p
         let (kernel, work) = (&window.kernel, &mut window.work);
-        let (c, convolutions) = state.history.predict(step.interval, scene.history_inputs(), kernel, work)?;
+        let (c, convolutions) = state.history.predict(step.interval, scene.history_inputs(), kernel, work);
         compliance_is_usable(c, step)?;
 
         // h = hi + u_old + c K p − ω − α·x, with the prescribed parts of ω and α
@@ -353,7 +353,7 @@ impl OnRegion for Computation {
             } else {
                 let ahead = held.extrapolation.reach(step.interval.dt);
                 let extrapolated = initial_guess(held, (&state.previous, ahead), window, trial, request, c);
-                if extrapolated && window.needs_potential() && step.interval.stride == [0; 2] {
+                if extrapolated && step.interval.stride == [0; 2] {
                     trial.predicted = predict_contact(state, window, trial, step, c);
                 }
             }

@@ -21,7 +21,7 @@ const MIN_SHARE_STAYING: f64 = 0.5;
 /// single cells join: their gaps fall evenly until they touch, which the extrapolated pressure predicts by itself.
 pub(super) fn predict_contact(state: &State, window: &Window, trial: &mut Trial, step: &Step<'_>, c: f64) -> bool {
     let (now, before) = (&state.held.current, &state.previous);
-    let elastic = state.history.exponential_rule().is_some_and(|rule| !rule.has_memory());
+    let elastic = !state.history.rule().has_memory();
     let (change, rows) = (state.history.last_change(), state.held.region.rows());
     if now.contact_cells == 0 || before.contact_cells == 0 {
         return false;

@@ -7,10 +7,10 @@ pub(crate) mod region;
 
 use std::sync::Arc;
 
-use crate::equilibrium::{Ground, Indenter, Region, Solver, Trial};
+use crate::equilibrium::{Ground, Indenter, Region, Trial};
 use crate::geometry::Gap;
 use crate::kernel::{LocalKernel, PeriodInverse, Workspace};
-use crate::solver::{ActiveSet, Outcome, PolonskyKeer, Problem, Solve, Stop};
+use crate::solver::{ActiveSet, Outcome, Problem, Solve, Stop};
 
 /// Kernel, solver and gap on the region of a state: all of it follows from scene, region and indenter. It is rebuilt
 /// for another region and never saved.
@@ -22,7 +22,7 @@ pub(crate) struct Window {
     pub(crate) near: Option<(LocalKernel, Workspace)>,
     /// The inverse of the near field, or of the kernel of periodic bodies, where surfaces attract each other.
     pub(crate) inverse: Option<PeriodInverse>,
-    solver: ContactSolver,
+    solver: Box<ActiveSet>,
     /// The gap of the indenter on the region, if that is not the whole grid.
     gap: Option<Gap>,
     /// The lowest of the gaps outside the region and its mirror images, above the datum.
@@ -31,21 +31,12 @@ pub(crate) struct Window {
     indenter: Option<Arc<Indenter>>,
 }
 
-#[derive(Debug, Clone)]
-enum ContactSolver {
-    ActiveSet(Box<ActiveSet>),
-    PolonskyKeer(Box<PolonskyKeer>),
-}
-
 impl Window {
     pub(crate) fn new(ground: &Ground, region: &Region, indenter: &Arc<Indenter>) -> Window {
         let rows = region.rows();
         let kernel = ground.kernel.on_rows(region.grid(), region.folded(), &rows);
         let mut work = kernel.workspace();
-        let solver = match ground.settings.solver {
-            Solver::ActiveSet => ContactSolver::ActiveSet(Box::new(ActiveSet::new(&kernel, ground.bodies, &mut work))),
-            Solver::PolonskyKeer => ContactSolver::PolonskyKeer(Box::new(PolonskyKeer::new(&rows, ground.bodies))),
-        };
+        let solver = Box::new(ActiveSet::new(&kernel, ground.bodies, &mut work));
         let near = ground.attraction.as_ref().and_then(|_| kernel.near());
         let inverse = ground.attraction.as_ref().map(|_| kernel.period_inverse());
         let mut window =
@@ -77,11 +68,6 @@ impl Window {
         self.gap.as_ref().unwrap_or(indenter.gap())
     }
 
-    /// Whether the solver needs K p of a guess, rather than computing it itself.
-    pub(crate) fn needs_potential(&self) -> bool {
-        matches!(self.solver, ContactSolver::ActiveSet(_))
-    }
-
     /// Solves the contact problem of a step of compliance `c`, from the guess that the trial holds; `prescribed` is the
     /// greatest motion that was taken from its gap. Where c is 0, the guess is the solution.
     pub(crate) fn solve(
@@ -103,14 +89,13 @@ impl Window {
             owner,
             likely: predicted.then_some(&likely[..]),
         };
-        let outcome = match solver {
-            _ if c == 0.0 => Outcome::Converged,
-            _ if problem.loaded_bodies().next().is_none() => {
-                solution.release();
-                Outcome::Converged
-            }
-            ContactSolver::ActiveSet(solver) => solver.solve(&mut Solve { problem: &problem, stop, solution, work }),
-            ContactSolver::PolonskyKeer(solver) => solver.solve(&mut Solve { problem: &problem, stop, solution, work }),
+        let outcome = if c == 0.0 {
+            Outcome::Converged
+        } else if problem.loaded_bodies().next().is_none() {
+            solution.release();
+            Outcome::Converged
+        } else {
+            solver.solve(&mut Solve { problem: &problem, stop, solution, work })
         };
         solution.follow_surface(&problem);
         outcome

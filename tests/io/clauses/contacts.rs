@@ -52,14 +52,11 @@ pub fn rows(t: &mut Table) {
             "traction: … given, 256 needed",
         );
     }
-    let by_function = builder_on(grid(), Material::incompressible(FnRheology::new(|t| 1.0e-6 * (1.0 + t.sqrt()))));
-    let by_function = by_function.settings(plain.with_time_rule(TimeRule::Backward)).build().unwrap();
     for (balance, kind, says) in [
         (EnergyBalance::new(&pressed()), Value, "displacement where an energy balance begins = … → 0, before any step"),
         (EnergyBalance::new(&two()), Value, "rigid bodies of an energy balance = 2 → 1"),
         (shared(|contact| EnergyBalance::new(&contact)), Unsupported, "an energy balance is not covered on rows that…"),
         (EnergyBalance::new(&contact(over)), Unsupported, "an energy balance is not covered on a grid that…"),
-        (EnergyBalance::new(&by_function), Value, "an energy balance needs an exponential series…Material::fitted"),
     ] {
         t.row("EnergyBalance::new", balance, kind, says);
     }

@@ -247,13 +247,6 @@ const SCENES: &[Scene] = &[
         contact.step(0.0, Load::force(0.1))?;
         contact.step(1.0e-3, Load::force(0.1)).map(told)
     }, "shorter than the material is known for"),
-("steps longer than the rectangle rule bears",
-    || {
-        let settings = Settings::default().with_time_rule(TimeRule::Rectangle);
-        let mut contact = builder_on(grid(), maxwell()).settings(settings).build()?;
-        contact.step(0.0, Load::force(0.1))?;
-        contact.step(1.5, Load::force(0.1)).map(told)
-    }, "the time rule rings"),
 // temperatures
 ("degrees Celsius in the law of WLF", || wlf()?.shift_factor(80.0).map(|_| String::new()), "temperatures are in kelvin"),
 ("a reference of WLF in degrees Celsius", || TimeTemperature::wlf(17.44, 51.6, 20.0).map(|_| String::new()), "temperatures are in kelvin"),

@@ -62,25 +62,21 @@ fn loads_of_every_kind_may_jump() {
     assert!(mean < 15.0, "{mean}");
 }
 
-/// Under one body every step of either solver satisfies the conditions of contact, and both find the same pressure. `CONDITIONS_SCENES` (160)
-/// chooses how many seeds are looked at, and `CONDITIONS_SEED` (1) which.
+/// Every step under one body satisfies the conditions of contact, which have one solution. `CONDITIONS_SCENES` (160) chooses how many seeds
+/// are looked at, and `CONDITIONS_SEED` (1) which.
 #[test]
-fn both_solvers_satisfy_the_conditions_and_agree() {
+fn steps_satisfy_the_conditions_of_contact() {
     const TOLERANCE: f64 = 1e-9;
     let (scenes, first) = (from_environment("CONDITIONS_SCENES", 160), from_environment("CONDITIONS_SEED", 1));
     let (mut steps, mut open, mut fallback) = (0, 0, 0);
     for seed in (first * 3_000_000..).take(scenes as usize) {
         let scene = Scene::any(seed, STEPS, true);
-        // several bodies may be too much for conjugate gradients
         if scene.shapes.len() > 1 {
             continue;
         }
         let settings = Settings::default().with_tolerance(TOLERANCE).with_edge(Edge::Allow).with_max_iterations(5000);
-        let [ours, reference] =
-            [Solver::ActiveSet, Solver::PolonskyKeer].map(|solver| scene.contact(settings.with_solver(solver)));
-        let (Ok(mut ours), Ok(mut reference)) = (ours, reference) else { continue };
-        // where a body swings clear, rounding may remain
-        let (mut peak, mut far) = (4e-3_f64, 0.0_f64);
+        let Ok(mut ours) = scene.contact(settings) else { continue };
+        let mut far = 0.0_f64;
         for (step, (dt, loads)) in scene.steps.iter().enumerate() {
             let name = format!("{} step {step}, {loads:?}", scene.name);
             match ours.step(*dt, loads) {
@@ -89,22 +85,11 @@ fn both_solvers_satisfy_the_conditions_and_agree() {
                 Err(Error::Step(StepError::LoadOutsideHull { .. })) => continue,
                 Err(error) => panic!("{name}: {error}"),
             }
-            reference.step(*dt, loads).unwrap_or_else(|error| panic!("{name}: {error}"));
             steps += 1;
             open += usize::from(ours.contact_cells() < ours.grid().len());
-            // the greatest pressure and lengths so far: after a release, rounding of them remains
-            peak = ours.pressure().iter().copied().fold(peak, f64::max);
+            // the greatest lengths so far: after a release, rounding of them remains
             far = far.max(moved(&ours, loads.len()));
             assert_contact_conditions(&ours, loads, TOLERANCE, far, &name);
-            // a body held at a pivot may turn away from the surface altogether: how far is not determined
-            let is_free = |tilt: &Tilt| matches!(tilt, Tilt::Free { .. });
-            let on_pivot = |load: &Load| matches!(load, Load::Approach { tilt, .. } if tilt.iter().any(is_free));
-            if !loads.iter().any(on_pivot) {
-                assert_contact_conditions(&reference, loads, TOLERANCE, far, &name);
-            }
-            for (a, b) in ours.pressure().iter().zip(reference.pressure()) {
-                assert!((a - b).abs() <= 1e-6 * peak, "{name}: {a} {b} of {peak}");
-            }
         }
     }
     println!("{steps} steps, {open} of them with cells out of contact, {fallback} with the fall-back");
