@@ -76,9 +76,10 @@ fn files_that_are_not_whole_are_refused_by_all_ranks_alike() {
             }
             assert!(matches!(cause(&[&sound[..], &[0; 8]].concat()), CheckpointError::Size { .. }));
             assert_eq!(cause(b"something else"), CheckpointError::Foreign);
-            // damaged in the part of any rank
+            // damaged in the part of any rank, or in a number of values
             for at in [21, 40, sound.len() / 4, sound.len() / 2, 3 * sound.len() / 4, sound.len() - 1] {
-                assert!(matches!(cause(&damaged(at)), CheckpointError::Damaged { .. }), "{at}");
+                let cause = cause(&damaged(at));
+                assert!(matches!(cause, CheckpointError::Damaged { .. } | CheckpointError::Size { .. }), "{at}");
             }
             // a value of one rank that no contact has, and a right checksum
             let mut forged = sound.clone();
