@@ -7,7 +7,7 @@ use crate::Grid;
 use crate::axis::Axis;
 use crate::equilibrium::held::net_sum;
 use crate::equilibrium::{Edge, Ground, Held, Region, Request, Trial, Window};
-use crate::error::{Convergence, Error, Result, StepError, coverage, exact_length};
+use crate::error::{Convergence, Error, Result, StepError, exact_length};
 use crate::load::{Load, Tilt, load_point};
 use crate::solver::{Counts, Freedom, Outcome, Solution};
 
@@ -18,8 +18,6 @@ pub(crate) fn validate_loads(ground: &Ground, request: Request<'_>) -> Result<()
     exact_length("loads of the rigid bodies", loads.len(), ground.bodies)?;
     for (body, load) in loads.iter().enumerate() {
         load.validate_in(ground.attraction.is_some())?;
-        let is_free = !load.is_force() && load.tilt().iter().any(|tilt| matches!(tilt, Tilt::Free { .. }));
-        coverage::FREE_TILT.unless(|_| is_free && ground.attraction.is_some())?;
         let Freedom { translation, tilt, point, total } = freedom(load, grid);
         let tilts = load.tilt().map(|tilt| tilt != Tilt::Fixed(0.0));
         let tilts_of_periodic = |axis: &Axis| tilts[axis.index()] && ground.kernel.periodic_axes()[axis.index()];

@@ -78,6 +78,23 @@ pub enum AdhesionError {
         lengths: [f64; 2],
     },
 
+    /// The passes of a step have not found its state: contact and attraction take nearly all of a grid that ends. Enlarge the
+    /// grid: a body that ends goes on beyond its edge with an infinite gap.
+    #[error("at t = {} s no state was found: contact and attraction span {:.0} % of the grid of {} × {} m, where steps \
+        end for certain up to {:.0} %: enlarge the grid (beyond a body that ends the gap is infinite), or give a \
+        surface that repeats a periodic body",
+        rounded(*.time, TIME), 100.0 * share, rounded(.lengths[0], 4), rounded(.lengths[1], 4), 100.0 * most)]
+    FillsGrid {
+        /// End of the step \[s\].
+        time: f64,
+        /// The part of a side that they span.
+        share: f64,
+        /// The part up to which steps end.
+        most: f64,
+        /// Lengths of the grid \[m\].
+        lengths: [f64; 2],
+    },
+
     /// The passes of a step have not found its state.
     #[error("at t = {} s {passes} passes left a change of the traction of {change:.1e} of its greatest, where \
         {tolerance:.1e} is allowed: take a shorter step", rounded(*.time, TIME))]

@@ -69,8 +69,6 @@ not_covered! {
     OTHER_GEOMETRY: "another geometry", Ranks: ONE_PROCESS;
     BROKEN_SYMMETRY: "a load that breaks the symmetry of the scene (unless Settings::symmetry is false)",
         Ranks: ONE_PROCESS;
-    FREE_TILT: "a body that tilts freely under a given approach or a spring",
-        Attraction: "give its tilts, or its force";
 
     // observations
     STRESS: "the stress below the surface", Ranks: ONE_PROCESS, Attraction: STRESS_OF_TRACTION;

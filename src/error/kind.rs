@@ -46,7 +46,7 @@ impl Error {
             Error::OutOfMemory { .. } => ErrorKind::Memory,
             Error::Cancelled { .. } | Error::Ranks(_) => ErrorKind::Cancelled,
             Error::Material(MaterialError::PoorFit { .. })
-            | Error::Adhesion(AdhesionError::NotConverged { .. })
+            | Error::Adhesion(AdhesionError::NotConverged { .. } | AdhesionError::FillsGrid { .. })
             | Error::Sliding(
                 SlidingError::NotConverged { .. } | SlidingError::Rounding { .. } | SlidingError::Drives { .. },
             )

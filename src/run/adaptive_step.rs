@@ -73,7 +73,7 @@ pub(super) fn adaptive_step(
                     let unsolved = matches!(
                         error,
                         Error::Step(StepError::NotConverged { .. })
-                            | Error::Adhesion(AdhesionError::NotConverged { .. })
+                            | Error::Adhesion(AdhesionError::NotConverged { .. } | AdhesionError::FillsGrid { .. })
                     );
                     // where the bodies separate within the step, a shorter one shows when
                     let separates = matches!(error, Error::Adhesion(AdhesionError::PulledOff { .. }));

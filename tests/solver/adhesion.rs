@@ -87,12 +87,10 @@ fn a_force_beside_the_middle_turns_a_punch() {
 fn what_is_not_covered_is_refused() {
     let builder = |range: f64| ball(32, 8.0, elastic(), law(range)).settings(Settings::default());
     let set = |settings: Settings| builder(1.0).settings(settings).build().err();
-    let free = Load::Approach { approach: 0.1, tilt: [Tilt::Free { at: 0.0 }; 2] };
     not_covered(
         [
             set(Settings::default().with_frame(Frame::Indenter)),
             builder(1.0).another_body(&Sphere::new(1.0).unwrap()).build().err(),
-            builder(1.0).build().unwrap().step(1.0, free).err(),
             builder(1.0).build().unwrap().fields().stress().err(),
         ]
         .map(|error| (error, "where surfaces attract each other")),

@@ -70,12 +70,12 @@ fn work_is_stored_or_lost_in_jumps() {
     let mut seen = 0;
     for scene in 0..from_environment("ADHESION_LOOPS", 3) {
         let mut draws = Draws::new(10 * from_environment("ADHESION_SEED", 1) + scene);
-        let (cells, side) = (64, 4.0);
+        let (cells, side) = (88, 5.5);
         let law: Arc<dyn Attraction> = match scene % 3 {
             2 => Arc::new(Dugdale::new(1.0, 0.55).unwrap().with_width(1.0).unwrap()),
             _ => Arc::new(ExponentialAttraction::new(1.0, 0.5).unwrap()),
         };
-        let wave = Wavy::new(draws.between(0.3, 0.6), side / draws.between(2.5, 3.5)).unwrap();
+        let wave = Wavy::new(draws.between(0.3, 0.6), 4.0 / draws.between(2.5, 3.5)).unwrap();
         let shape = Sum::new(Sphere::new(draws.between(1.0, 1.5)).unwrap(), wave);
         let mut contact = sticky::ball(cells, side, elastic(), law).geometry(&shape).build().unwrap();
         let touch = contact.approach();

@@ -25,7 +25,7 @@ use crate::memory;
 /// | its preconditioner | 7.4: a quarter of a spectrum of the grid without padding, 2, and the extension of the residual, 5.4, and 12 per column for each thread |
 /// | kernel | 25: a quarter of the padded spectrum, 8, and work space, 17 |
 /// | transforms on several threads | 16 more |
-/// | attraction between surfaces | 68: its traction at both ends of a step and in the trial, 24, what its steps work in, 40, and the near field of the kernel and its inverse, 4, and 400 to 480 bytes a column for each thread |
+/// | attraction between surfaces | 76: its traction at both ends of a step and in the trial, 24, what its steps work in, 48, and the near field of the kernel and its inverse, 4, and 400 to 480 bytes a column for each thread |
 ///
 /// and per cell of the whole grid 8 for the gap, 8 for the pressure where not all cells are computed, 2 if there are
 /// several bodies. Transforms need tables of their own length, which counts in line contacts: 144 bytes per cell.

@@ -4,7 +4,8 @@
 //! traction, the creep of the past included, the net traction of a state in balance is q = M x/c + p, and its energy
 //! E = Σ ½ x (q + p) − ∫ₕ^∞ s. Only the stiffness of the mean and p differ between loads: a force fixes the mean of
 //! q, a spring sets its stiffness in series with the bodies, and a given approach of bodies whose mean is held fixes
-//! the mean of h, with a multiplier λ. So the loads are in balance in every iteration.
+//! the mean of h, with a multiplier λ. Free tilts are two more [modes](Tilts) beside the mean. So the loads are in
+//! balance in every iteration.
 //!
 //! E falls along conjugate directions (Polak & Ribière, Rev. Fr. Inform. Rech. Opér. 16, 1969) of the gradient
 //! r = q + s(h) − λ on the cells that are open or open, with K as their preconditioner; the wall is a bound
@@ -21,6 +22,7 @@ use crate::equilibrium::Trial;
 use crate::equilibrium::window::Window;
 use crate::error::{AdhesionError, Error, Result, StepError};
 use crate::kernel::PeriodInverse;
+use crate::linalg::solve_normal_equations;
 use crate::load::Load;
 use crate::parallel::{Rows, for_each_band};
 use crate::solver::{Counts, ModeCoefficients, Solution};
@@ -53,11 +55,12 @@ const LOOKS: usize = 4;
 const UNSTABLE: f64 = -1e-5;
 /// q is computed afresh after so many iterations.
 const FRESH: usize = 50;
+/// A mode that depends on the others to this part of its square is left out.
+const DEPENDENT: f64 = 1e-11;
 /// Bodies without contact whose attraction carries this part of the load, or less, fly apart.
 const CARRIED: f64 = 0.5;
 
 /// The equations of a step: q = M x/c + p, where M gives the mean its stiffness.
-#[derive(Clone, Copy)]
 pub(super) struct Balance {
     pub(super) compliance: f64,
     /// The stiffness of the mean of x, which replaces the one in M.
@@ -70,6 +73,36 @@ pub(super) struct Balance {
     pub(super) held: bool,
     /// The stiffness of M, and the compliance of K, of the mean.
     pub(super) inverse: [f64; 2],
+    pub(super) tilts: Option<Tilts>,
+}
+
+/// Motions m of a body that tilts freely, with the modes B: x = c N q − B m, and Bᵀ q + D m carries the load, D being the
+/// stiffness of a spring. So q = M x/c + W m with W = M B/c, and m follows from x.
+pub(super) struct Tilts {
+    images: [Vec<f64>; 3],
+    /// Bᵀ W + D.
+    gram: [[f64; 3]; 3],
+    load: [f64; 3],
+    /// The motion of x = 0.
+    carried: [f64; 3],
+}
+
+impl Tilts {
+    /// m of the lift x, or of a change of it.
+    fn motion(&self, rows: &Rows, x: &[f64], linear: bool) -> [f64; 3] {
+        let held = rows.sum_terms(|k| Some([0, 1, 2].map(|j| self.images[j][k] * x[k])));
+        let load = if linear { [0.0; 3] } else { self.load };
+        self.solve([0, 1, 2].map(|j| load[j] - held[j]))
+    }
+
+    fn solve(&self, right: [f64; 3]) -> [f64; 3] {
+        solve_normal_equations(&self.gram, right, DEPENDENT)
+    }
+
+    /// W m of a cell.
+    fn at(&self, motion: [f64; 3], k: usize) -> f64 {
+        (0..3).map(|j| self.images[j][k] * motion[j]).sum()
+    }
 }
 
 /// A descent in the gap: what it reads, and what it writes. In the trial x takes the place of the potential, q of the
@@ -95,9 +128,19 @@ impl Balance {
         linear: bool,
     ) {
         inverse.apply(x, q, &mut window.work);
-        let mean = window.kernel.rows().sum(x) / x.len() as f64;
+        let rows = window.kernel.rows();
+        let mean = rows.sum(x) / x.len() as f64;
         let add = (self.of_mean - self.inverse[0] / self.compliance) * mean + if linear { 0.0 } else { self.offset };
         q.iter_mut().for_each(|q| *q = *q / self.compliance + add);
+        if let Some(tilts) = &self.tilts {
+            let motion = tilts.motion(rows, x, linear);
+            q.iter_mut().enumerate().for_each(|(k, q)| *q += tilts.at(motion, k));
+        }
+    }
+
+    /// p of a cell.
+    pub(super) fn offset_at(&self, k: usize) -> f64 {
+        self.offset + self.tilts.as_ref().map_or(0.0, |tilts| tilts.at(tilts.carried, k))
     }
 
     /// Moves x to h ≥ 0, and to its given mean by a shift; returns whether any cell moved.
@@ -148,7 +191,7 @@ impl AttractedStep<'_> {
             }
         };
         let soft = 1.0 / (of_mean + 0.5 * stiffness / c);
-        Balance { compliance: c, of_mean, offset, soft, held, inverse: [stiffness, compliance] }
+        Balance { compliance: c, of_mean, offset, soft, held, inverse: [stiffness, compliance], tilts: None }
     }
 
     /// Writes z, s, K (z − s) and the motion of the guess of a descent: extrapolated, or of undeformed bodies, which
@@ -167,6 +210,12 @@ impl AttractedStep<'_> {
             now + trial.reach * (now - before) - datum
         };
         trial.solution.motions[0] = ModeCoefficients([if self.wanted.translation { motion } else { 0.0 }, 0.0, 0.0]);
+        if self.wanted.tilts() && !state.is_undisturbed() {
+            let modes = state.held.region.modes(self.wanted);
+            let [now, before] =
+                [&state.held.current, &state.previous].map(|at| modes.coefficients(self.free_motion(at)));
+            trial.solution.motions[0] = now.plus(trial.reach, now.plus(-1.0, before));
+        }
     }
 
     /// The greatest |r| that ends a descent, over the greatest traction: the error is r over the curvature.
@@ -176,6 +225,36 @@ impl AttractedStep<'_> {
 }
 
 impl Descent<'_> {
+    /// Gives the balance the free tilts of the body, with the kernel that the window has.
+    pub(super) fn free_tilts(&mut self) {
+        let Descent { problem, balance, inverse, window, counts, .. } = self;
+        let AttractedStep { state, step, wanted, .. } = **problem;
+        let (region, [_, compliance]) = (&state.held.region, inverse.mean);
+        let modes = region.modes(wanted);
+        let mut load = modes.load().map(|unit| wanted.total * unit);
+        // M with the stiffness of the mean that the bodies have
+        (balance.of_mean, balance.offset) = (1.0 / (balance.compliance * compliance), 0.0);
+        let images = [0, 1, 2].map(|j| {
+            let mode: Vec<f64> = (0..region.len()).map(|k| modes.at(k)[j]).collect();
+            let mut image = vec![0.0; mode.len()];
+            if modes.free()[j] {
+                balance.tractions(inverse, window, &mode, &mut image, true);
+                counts.convolutions += 1;
+            }
+            image
+        });
+        let rows = window.kernel.rows();
+        let mut gram = [0, 1, 2].map(|i| rows.sum_terms(|k| Some([0, 1, 2].map(|j| modes.at(k)[i] * images[j][k]))));
+        if let Load::Spring { stiffness, drive, .. } = step.loads[0] {
+            let stiffness = stiffness / region.cell_area();
+            gram[0][0] += stiffness;
+            load[0] = stiffness * (drive - step.indenter.gap().datum);
+        }
+        let mut tilts = Tilts { images, gram, load, carried: [0.0; 3] };
+        tilts.carried = tilts.solve(load);
+        balance.tilts = Some(tilts);
+    }
+
     /// Finishes z, s and K (z − s) of the trial from their guess, in the gap of the trial.
     pub(super) fn run(&mut self) -> Result<()> {
         let AttractedStep { state, step, stop, wanted, .. } = *self.problem;
@@ -312,7 +391,7 @@ impl Descent<'_> {
             }
         }
         let change = self.gradient().greatest;
-        Err(AdhesionError::NotConverged { time, passes: self.own.report.passes, change, tolerance: limit }.into())
+        Err(self.problem.not_converged(self.own, change))
     }
 
     /// Writes x + `length` d, kept to h ≥ 0, and its q to what is tried; where the wall or the mean changed it, or on demand, q is computed afresh.
@@ -362,16 +441,16 @@ impl Descent<'_> {
         let Descent { problem, balance, trial, .. } = self;
         let (rows, Trial { gap, solution, .. }) = (problem.state.held.region.rows(), &mut **trial);
         let Solution { pressure, attraction: q, potential: x, motions, .. } = solution;
-        let (c, motion) = (balance.compliance, motions[0].0[0]);
+        let (c, motion, modes) = (balance.compliance, motions[0], problem.state.held.region.modes(problem.wanted));
         for_each_band([&mut *x, &mut *q], |first, [x, q]| {
-            for ((x, q), z) in x.iter_mut().zip(q).zip(&pressure[first..]) {
-                (*x, *q) = (c * *x - motion, z - *q);
+            for (((x, q), z), k) in x.iter_mut().zip(q).zip(&pressure[first..]).zip(first..) {
+                (*x, *q) = (c * *x - modes.displacement(motion, k), z - *q);
             }
         });
         let [of_x, of_q] = [&*x, &*q].map(|field| rows.sum(field) / field.len() as f64);
         let shift = balance.of_mean * of_x + balance.offset - of_q;
         q.iter_mut().for_each(|q| *q += shift);
-        let mut opens = false;
+        let mut opens = balance.tilts.is_some();
         // cells under pressure stay in contact
         for ((x, _), gap) in x.iter_mut().zip(&*pressure).zip(&*gap).filter(|((_, z), _)| **z > 0.0) {
             opens |= gap + *x != 0.0;
@@ -390,11 +469,14 @@ impl Descent<'_> {
         q.iter_mut().for_each(|q| *q -= multiplier);
         let mean = |field: &[f64]| rows.sum(field) / cells;
         let motion = if problem.wanted.translation { c * balance.inverse[1] * mean(q) - mean(x) } else { 0.0 };
+        let upright = ModeCoefficients([motion, 0.0, 0.0]);
+        let motion = balance.tilts.as_ref().map_or(upright, |tilts| ModeCoefficients(tilts.motion(&rows, x, false)));
+        let modes = problem.state.held.region.modes(problem.wanted);
         let greatest = problem.law.traction(0.0);
-        for (((x, q), z), gap) in x.iter_mut().zip(q).zip(&mut solution.pressure).zip(gap) {
+        for ((((x, q), z), gap), k) in x.iter_mut().zip(q).zip(&mut solution.pressure).zip(gap).zip(0..) {
             *z = if *gap + *x <= 0.0 { (*q + greatest).max(0.0) } else { 0.0 };
-            (*x, *q) = ((*x + motion) / c, *z - *q);
+            (*x, *q) = ((*x + modes.displacement(motion, k)) / c, *z - *q);
         }
-        solution.motions[0] = ModeCoefficients([motion, 0.0, 0.0]);
+        solution.motions[0] = motion;
     }
 }

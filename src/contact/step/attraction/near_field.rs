@@ -12,39 +12,42 @@ use super::descent::Descent;
 use super::{Attracted, AttractedStep};
 use crate::equilibrium::Trial;
 use crate::equilibrium::window::Window;
-use crate::error::{Error, Result};
+use crate::error::{AdhesionError, Error, Result};
 use crate::parallel::for_each_band;
 use crate::solver::{Counts, Solution};
 
-/// Cells act where they touch, or with this share of the greatest attraction.
-const LEAST_ACTION: f64 = 0.1;
-/// The part of the grid that cells that act may span, along each axis.
-const MAX_EXTENT: f64 = 0.8;
 /// Rounds end where the new F (z − s) changes s by this part of what the tolerance allows.
 const MOST_CHANGE: f64 = 0.3;
-/// What a round may leave of the change of F (z − s) in the round before.
+/// Greatest number of rounds.
+const MAX_ROUNDS: usize = 60;
+/// What a round takes in of a change of F (z − s).
+const RELAXATION: [f64; 2] = [0.1, 3.0];
+/// Rounds may fail where cells that touch, or act with this share of the greatest attraction, span more than this part of
+/// the grid along an axis.
+const LEAST_ACTION: f64 = 0.1;
+const MAX_EXTENT: f64 = 0.8;
+/// Where a round leaves more than this of the change of the round before, and the change is no more than so many times
+/// what may be left, it is one of the error of the descents along a soft direction: they go on, each time more exact by
+/// this factor.
 const LEAST_GAIN: f64 = 0.1;
-/// A change of F (z − s) of no more than so many times what may be left is one of the error of the descents along a
-/// soft direction, if it falls no more: they go on, each time more exact by this factor.
 const NEARLY: f64 = 10.0;
 const MORE_EXACT: f64 = 0.1;
 
 impl AttractedStep<'_> {
-    /// Finishes z, s and K (z − s) of the trial by descents in the gap. Returns whether that sufficed; else they are
-    /// at least nearer.
+    /// Finishes z, s and K (z − s) of the trial by descents in the gap.
     pub(super) fn solve_in_gap(
         &self,
         own: &mut Attracted,
         window: &mut Window,
         trial: &mut Trial,
         counts: &mut Counts,
-    ) -> Result<bool> {
-        let Some(mut inverse) = window.inverse.take() else { return Ok(false) };
+    ) -> Result<()> {
+        let Some(mut inverse) = window.inverse.take() else { return Err(self.not_converged(own, f64::INFINITY)) };
         self.begin_in_gap(window, trial);
         (own.softness, own.exactness, own.softest) = (0.0, 1.0, None);
         let (near, balance) = (window.near.is_some(), self.balance(window, &inverse));
         let mut descent = Descent { problem: self, balance, inverse: &mut inverse, own, window, trial, counts };
-        let solved = if near { descent.run_in_rounds() } else { descent.run().map(|()| true) };
+        let solved = if near { descent.run_in_rounds() } else { descent.run() };
         window.inverse = Some(inverse);
         solved
     }
@@ -71,72 +74,93 @@ impl AttractedStep<'_> {
         let [along1, along2] = [0, 1].map(|axis| (ends[axis][1] - begin(axis)) / region.cells()[axis] as f64);
         along1.max(along2)
     }
+
+    /// The error of a descent that leaves such a change.
+    pub(super) fn not_converged(&self, own: &Attracted, change: f64) -> Error {
+        let (time, tolerance) = (self.step.interval.time, self.limit());
+        AdhesionError::NotConverged { time, passes: own.report.passes, change, tolerance }.into()
+    }
 }
 
 impl Descent<'_> {
     /// Rounds of descents with the near field.
-    fn run_in_rounds(&mut self) -> Result<bool> {
+    fn run_in_rounds(&mut self) -> Result<()> {
         let problem = self.problem;
-        if problem.extent(self.trial) > MAX_EXTENT {
-            return Ok(false);
+        if problem.wanted.tilts() {
+            self.with_near_field(|descent| {
+                descent.free_tilts();
+                Ok(())
+            })?;
         }
         self.split();
-        let (c, mut pays, mut last) = (self.balance.compliance, true, f64::INFINITY);
-        while pays {
+        let (c, mut last, mut relaxation) = (self.balance.compliance, f64::INFINITY, None);
+        for _ in 0..MAX_ROUNDS {
             problem.open_gap(self.window, self.trial);
             for_each_band([&mut self.trial.gap], |first, [gap]| {
                 gap.iter_mut().zip(&self.own.far[first..]).for_each(|(gap, far)| *gap += c * far);
             });
-            let before = self.counts.convolutions;
-            self.window.trade_kernels();
-            let passed = self.run();
-            self.window.trade_kernels();
-            self.counts.preconditioner_applications += problem.near_price() * (self.counts.convolutions - before);
-            self.counts.convolutions = before;
-            match passed {
-                Err(Error::Cancelled { what }) => return Err(Error::Cancelled { what }),
-                Err(_) => {
-                    // perhaps there is a state with K
-                    problem.begin_in_gap(self.window, self.trial);
-                    return Ok(false);
-                }
-                Ok(()) => {}
-            }
-            let [change, most] = self.correct();
+            self.with_near_field(Descent::run)?;
+            let [change, most] = self.correct(&mut relaxation);
             let most = c * most * problem.scene.ground.softening / problem.law.traction(0.0);
             let allowed = MOST_CHANGE * problem.tolerance(self.own.softness);
             if most <= allowed {
                 self.join();
-                return Ok(true);
+                return Ok(());
             }
-            pays = change <= LEAST_GAIN * last;
-            if !pays && most <= NEARLY * allowed && self.own.exactness > MORE_EXACT * MORE_EXACT {
-                (self.own.exactness, pays) = (MORE_EXACT * self.own.exactness, true);
+            if change > LEAST_GAIN * last && most <= NEARLY * allowed && self.own.exactness > MORE_EXACT * MORE_EXACT {
+                self.own.exactness *= MORE_EXACT;
             }
             last = change;
+            self.own.relax(relaxation.unwrap_or(1.0));
         }
-        self.join();
-        Ok(false)
+        let (time, lengths) = (problem.step.interval.time, problem.scene.ground.grid.lengths());
+        match problem.extent(self.trial) {
+            share if share > MAX_EXTENT => {
+                Err(AdhesionError::FillsGrid { time, share, most: MAX_EXTENT, lengths }.into())
+            }
+            _ => Err(problem.not_converged(self.own, last)),
+        }
     }
 
-    /// Adds the far field to N (z − s).
+    /// Computes with N in the place of K.
+    fn with_near_field(&mut self, compute: impl FnOnce(&mut Self) -> Result<()>) -> Result<()> {
+        let before = self.counts.convolutions;
+        self.window.trade_kernels();
+        let done = compute(self);
+        self.window.trade_kernels();
+        let counts = &mut *self.counts;
+        counts.preconditioner_applications += self.problem.near_price() * (counts.convolutions - before);
+        counts.convolutions = before;
+        done
+    }
+
+    /// Adds the far field of z − s to N (z − s).
     fn join(&mut self) {
-        self.trial.solution.potential.iter_mut().zip(&self.own.far).for_each(|(v, far)| *v += far);
+        let Attracted { far, change, .. } = &*self.own;
+        let parts = far.iter().zip(change);
+        self.trial.solution.potential.iter_mut().zip(parts).for_each(|(v, (far, change))| *v += far + change);
     }
 
-    /// F (z − s) anew; returns Σ (z + s) |ΔF (z − s)|, and the greatest |ΔF (z − s)|.
-    fn correct(&mut self) -> [f64; 2] {
+    /// The change of F (z − s), and the part of it that Aitken's rule takes after two rounds (Irons & Tuck, Int. J. Numer.
+    /// Methods Eng. 1, 1969): where contact and attraction take most of the grid, F is no small part. Returns
+    /// Σ (z + s) |ΔF (z − s)| and the greatest |ΔF (z − s)|.
+    fn correct(&mut self, relaxation: &mut Option<f64>) -> [f64; 2] {
         let Descent { own, window, trial, counts, .. } = self;
         let Solution { pressure, attraction, potential, .. } = &trial.solution;
-        let (exact, far) = own.image_of_net(&trial.solution, window);
+        let (exact, far, changes) = own.image_of_net(&trial.solution, window);
         counts.convolutions += 1;
-        let (mut changed, mut most) = (0.0, 0.0_f64);
-        for (k, far) in far.iter_mut().enumerate() {
-            let now = exact[k] - potential[k];
-            let change = (now - *far).abs();
-            (changed, most) = (changed + (pressure[k] + attraction[k]) * change, most.max(change));
-            *far = now;
+        let (mut most, mut sums) = (0.0_f64, [0.0; 3]);
+        for (k, change) in changes.iter_mut().enumerate() {
+            let before = std::mem::replace(change, exact[k] - potential[k] - far[k]);
+            let less = *change - before;
+            most = most.max(change.abs());
+            let added = [(pressure[k] + attraction[k]) * change.abs(), before * less, less * less];
+            (0..3).for_each(|sum| sums[sum] += added[sum]);
         }
+        let [changed, along, square] = sums;
+        *relaxation = Some(relaxation.map_or(1.0, |last| {
+            if square > 0.0 { (-last * along / square).clamp(RELAXATION[0], RELAXATION[1]) } else { last }
+        }));
         [changed, most]
     }
 
@@ -144,7 +168,7 @@ impl Descent<'_> {
     fn split(&mut self) {
         let Descent { own, window, trial, counts, .. } = self;
         window.trade_kernels();
-        let (near, far) = own.image_of_net(&trial.solution, window);
+        let (near, far, _) = own.image_of_net(&trial.solution, window);
         window.trade_kernels();
         counts.preconditioner_applications += self.problem.near_price();
         std::mem::swap(far, &mut trial.solution.potential);
