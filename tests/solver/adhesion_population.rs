@@ -203,3 +203,68 @@ fn random_scenes() {
     );
     assert!(pulled > 0 && apart > 0 && full > 0, "{pulled} {apart} {full}");
 }
+
+/// Punches with wavy faces that tilt freely, under forces, approaches and springs: every step ends in a state that satisfies the equations, and
+/// its moment about the point where the load acts vanishes. `ADHESION_TILTS` (15) chooses the number of scenes.
+#[test]
+fn bodies_that_tilt_freely_are_in_balance() {
+    let (scenes, seed) = (from_environment("ADHESION_TILTS", 15), from_environment("ADHESION_SEED", 1));
+    let (mut steps, mut pulled, mut turned) = (0, 0, 0);
+    for number in 0..scenes {
+        let mut draws = Draws::new(91_000 * seed + number);
+        let drawn = Drawn {
+            side: 4.0,
+            tabor: [0.5, 1.2],
+            heights: [0.01, 0.1],
+            waves: [2.0, 4.0],
+            creeping: 0.5,
+            periodic: 0.0,
+        };
+        let scene = Scene::draw(&mut draws, &drawn);
+        let wave = Wavy::new(draws.scale(0.005, 0.1), draws.between(1.0, 2.0)).unwrap();
+        let shape = Box::new(Sum::new(FlatPunch::circular(draws.between(0.9, 1.5)).unwrap(), wave));
+        let scene = Scene { shape, ..scene };
+        let at = [0, 1].map(|_| draws.between(-0.25, 0.25));
+        let tilt = at.map(|at| Tilt::Free { at });
+        let (kind, step, stiffness) = (number % 3, draws.scale(0.05, 5.0), draws.scale(2.0, 50.0));
+        let name = format!("scene {number}: {:?}, {}, load {kind} ({stiffness:.1}) at {at:?}", scene.shape, scene.name);
+        let mut contact = scene.build(Settings::default());
+        let touch = contact.approach();
+        for k in 0..12 {
+            let down = if k < 5 { f64::from(k) / 4.0 } else { 1.0 - 0.3 * f64::from(k - 4) };
+            let load = match kind {
+                0 => Load::Approach { approach: touch + 0.4 * down, tilt },
+                1 => Load::Spring { stiffness, drive: touch + 0.4 * down, tilt },
+                _ => Load::Force { normal: 2.0 * down, tilt },
+            };
+            match contact.step(step, load) {
+                Ok(report) => {
+                    let name = format!("{name}, step {k}");
+                    // the spring pulls where the load acts
+                    let by_spring = contact.approach() + (0..2).map(|axis| report.tilt[axis] * at[axis]).sum::<f64>();
+                    if kind == 1 {
+                        let off = stiffness * (touch + 0.4 * down - by_spring) - report.force;
+                        assert!(off.abs() < 1e-6, "{name}: {off:e}");
+                    } else {
+                        check(&name, &contact, &*scene.law, !scene.creeping);
+                    }
+                    if kind == 0 && !report.warnings.contains(viscocontact::contact::Warnings::NO_CONTACT) {
+                        assert!((by_spring - (touch + 0.4 * down)).abs() < 1e-9, "{name}: {by_spring}");
+                    }
+                    let moment = contact.fields().moment();
+                    let off = [0, 1].map(|axis| (moment[axis] - report.force * at[axis]).abs());
+                    assert!(off.iter().all(|off| *off < 1e-5), "{name}: {off:?}");
+                    turned += usize::from(report.tilt.iter().all(|tilt| tilt.abs() > 1e-4));
+                    steps += 1;
+                }
+                Err(Error::Adhesion(AdhesionError::PulledOff { .. })) if kind == 2 && down < 0.0 => {
+                    pulled += 1;
+                    break;
+                }
+                Err(error) => panic!("{name}, step {k}: {error}"),
+            }
+        }
+    }
+    println!("{scenes} scenes, {steps} steps, {turned} turned, {pulled} pulled off");
+    assert!(steps as u64 > 8 * scenes && 2 * turned > steps && pulled > 0, "{steps} {turned} {pulled}");
+}
