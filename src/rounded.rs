@@ -35,24 +35,6 @@ pub(crate) fn without_noise(value: f64, allowed: &str) -> f64 {
     if limits.peek().is_some() && limits.all(|limit| limit != short) { short } else { value }
 }
 
-/// Two texts with the noise of the last digits of their numbers removed, if the texts still differ.
-#[cfg(feature = "checkpoint")]
-pub(crate) fn texts_without_noise(texts: [String; 2]) -> [String; 2] {
-    let of_word = |word: &str| match word.parse::<f64>() {
-        Ok(number) if word.len() > NOISY => format!("{:e}", nearest(number, SHOWN)),
-        _ => word.to_owned(),
-    };
-    let short = texts.each_ref().map(|text| text.split(' ').map(of_word).collect::<Vec<_>>().join(" "));
-    if short[0] == short[1] { texts } else { short }
-}
-
-/// Numbers of more characters than this have digits that nobody typed, ...
-#[cfg(feature = "checkpoint")]
-const NOISY: usize = 12;
-/// ... of which so many decimals are shown.
-#[cfg(feature = "checkpoint")]
-const SHOWN: usize = 4;
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -64,14 +46,6 @@ mod tests {
         assert_eq!(without_noise(-1.0e-320, "finite and >= 0"), -1.0e-320);
         assert_eq!(without_noise(0.1 + 0.2, "finite and >= the shortest wavelength"), 0.1 + 0.2);
         assert!(without_noise(f64::NAN, "finite, > 0 and at most 1e300 m").is_nan());
-    }
-
-    #[cfg(feature = "checkpoint")]
-    #[test]
-    fn texts_keep_the_digits_that_tell_them_apart() {
-        let texts = |other: &str| texts_without_noise(["of 8.333333333333333e-5 m".into(), format!("of {other} m")]);
-        assert_eq!(texts("1.25e-4"), ["of 8.3333e-5 m", "of 1.25e-4 m"]);
-        assert_eq!(texts("8.333333333333334e-5")[1], "of 8.333333333333334e-5 m");
     }
 
     #[test]

@@ -105,15 +105,6 @@ pub(crate) fn sum_of_pairs(a: &[f64], b: &[f64], f: impl Fn(f64, f64) -> f64) ->
     lanes.into_iter().sum::<f64>() + a_rest.iter().zip(b_rest).map(|(&a, &b)| f(a, b)).sum::<f64>()
 }
 
-/// Fingerprint of a field: the sums of its absolute values, of these weighted along x1 and x2, of their squares, and of
-/// the absolute values with weights without symmetry, which distinguishes a field from its rotated or mirrored copies.
-#[cfg(feature = "checkpoint")]
-pub(crate) fn moments(field: impl Iterator<Item = f64>, columns: usize) -> Vec<f64> {
-    let mut sums = [0.0; MOMENTS];
-    field.enumerate().for_each(|(k, value)| add_to_moments(&mut sums, value, k, columns));
-    sums.to_vec()
-}
-
 /// A number from 0 to 1 for each cell, by the rounds of splitmix64 (Steele, Lea & Flood, OOPSLA 2014) but for the last.
 pub(crate) fn scattered(k: usize) -> f64 {
     let bits = (k as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
@@ -121,37 +112,9 @@ pub(crate) fn scattered(k: usize) -> f64 {
     ((bits ^ (bits >> 27)) >> 11) as f64 / (1_u64 << 53) as f64
 }
 
-/// Number of sums that identify a field.
-#[cfg(feature = "checkpoint")]
-pub(crate) const MOMENTS: usize = 5;
-
-/// Adds the value of cell `k` to the sums over a field.
-#[cfg(feature = "checkpoint")]
-pub(crate) fn add_to_moments(sums: &mut [f64; MOMENTS], value: f64, k: usize, columns: usize) {
-    let (size, i, j) = (value.abs(), (k / columns) as f64, (k % columns) as f64);
-    for (sum, term) in sums.iter_mut().zip([size, size * i, size * j, size * size, size * (0.5 + scattered(k))]) {
-        *sum += term;
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[cfg(feature = "checkpoint")]
-    #[test]
-    fn fields_that_are_turned_or_mirrored_are_told_apart() {
-        // bars through the middle: only the last sum differs
-        for (long, short) in [(3, 1), (5, 1), (5, 3), (9, 1), (9, 7), (15, 3)] {
-            let bar = |half1: i32, half2: i32| {
-                let inside = move |k: i32| (k / 31 - 15).abs() <= half1 && (k % 31 - 15).abs() <= half2;
-                moments((0..31 * 31).map(|k| f64::from(u8::from(inside(k)))), 31)
-            };
-            let (one, turned) = (bar(long, short), bar(short, long));
-            assert_eq!(one[..4], turned[..4]);
-            assert!((one[4] / turned[4] - 1.0).abs() > 1e-6, "{long} {short}");
-        }
-    }
 
     #[test]
     fn sums_take_every_value() {

@@ -1,8 +1,6 @@
 //! The constants of a contact.
 
 use crate::contact::Clock;
-#[cfg(feature = "checkpoint")]
-use crate::contact::checkpoint::built::Built;
 use crate::contact::read::limits::Limits;
 use crate::equilibrium::Ground;
 use crate::error::Result;
@@ -18,9 +16,6 @@ pub(crate) struct Scene {
     pub(crate) temperature: Option<TemperatureHistory>,
     /// Creep of bodies that the indenter moves over, and that end.
     pub(crate) creep: Option<CreepSpectrum>,
-    /// Fingerprint of the gap as built.
-    #[cfg(feature = "checkpoint")]
-    pub(crate) built: Built,
 }
 
 impl Scene {

@@ -4,6 +4,8 @@ use std::any::Any;
 use std::sync::Arc;
 
 use crate::contact::{Computation, Scene, State, StepReport};
+#[cfg(feature = "checkpoint")]
+use crate::equilibrium::Indenter;
 use crate::error::Result;
 use crate::fields::{About, Fields, Surface, View};
 use crate::geometry::Missed;
@@ -52,6 +54,9 @@ pub struct ViscoelasticContact {
     pub(crate) missed: Missed,
     /// Fields on the whole grid, for users to read.
     pub(crate) view: View,
+    /// The indenter as built, by which checkpoints tell scenes apart.
+    #[cfg(feature = "checkpoint")]
+    pub(crate) built: Arc<Indenter>,
     /// Progress of a run that was saved and resumed, for the next run to continue. Its type belongs to runs, which
     /// use contacts.
     pub(crate) saved_run: Option<Arc<dyn Any + Send + Sync>>,
@@ -61,7 +66,15 @@ impl ViscoelasticContact {
     pub(crate) fn new(scene: Scene, computation: Computation, missed: Missed) -> ViscoelasticContact {
         let mut view = View::default();
         view.refresh(&computation.state.held);
-        ViscoelasticContact { scene: Arc::new(scene), computation, missed, view, saved_run: None }
+        ViscoelasticContact {
+            scene: Arc::new(scene),
+            #[cfg(feature = "checkpoint")]
+            built: Arc::clone(&computation.state.held.indenter),
+            computation,
+            missed,
+            view,
+            saved_run: None,
+        }
     }
 
     /// Its fields, and what follows from them.

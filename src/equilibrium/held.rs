@@ -15,7 +15,7 @@ use crate::solver::{RigidMotion, Solution};
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Held {
     pub(crate) loads: Vec<Load>,
-    #[cfg_attr(feature = "checkpoint", serde(with = "crate::equilibrium::indenter::saved"))]
+    #[cfg_attr(feature = "checkpoint", serde(skip))]
     pub(crate) indenter: Arc<Indenter>,
     /// The part of the grid that is computed: every field lives there, except for the gap of the indenter.
     pub(crate) region: Region,

@@ -153,7 +153,6 @@ pub(crate) struct Gap {
     /// Minimum of the gap \[m\].
     pub(crate) datum: f64,
     /// Gap of each cell above the minimum \[m\]; 0 in at least one cell, +∞ where there is nothing to touch.
-    #[cfg_attr(feature = "checkpoint", serde(skip))]
     pub(crate) above: Vec<f64>,
     /// The body of each cell, the lowest one there; `None` for a single body.
     pub(crate) owner: Option<Vec<u16>>,

@@ -283,8 +283,8 @@ impl ExponentialRule {
     }
 
     #[cfg(feature = "checkpoint")]
-    pub(crate) fn is_of_the_material_of(&self, other: &ExponentialRule) -> bool {
-        self.relaxation == other.relaxation
+    pub(crate) fn relaxation(&self) -> &RelaxationSpectrum {
+        &self.relaxation
     }
 
     /// The past does not determine how u continues, as after a corner of the load.

@@ -296,15 +296,12 @@ impl InfluenceKernel {
         LocalKernel { whole: self.clone(), grid: part.clone(), rows: rows.clone(), folded, operator }
     }
 
-    /// Fingerprint of the kernel among kernels of the same kind.
+    /// Numbers that tell the kernel from others of its kind.
     #[cfg(feature = "checkpoint")]
     pub(crate) fn mark(&self) -> Vec<f64> {
-        let mut mark = vec![self.self_influence()];
-        if self.body == Body::User {
-            let (values, columns) = self.table();
-            mark.extend(crate::sum::moments(values, columns));
-        }
-        mark
+        let of_user = (self.body == Body::User).then(|| self.table().0.enumerate());
+        let sum = of_user.map(|table| table.map(|(k, value)| value.abs() * crate::sum::scattered(k)).sum());
+        [self.self_influence()].into_iter().chain(sum).collect()
     }
 
     /// Axes along which the bodies are periodic, the grid being one period.

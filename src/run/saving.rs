@@ -20,8 +20,8 @@ impl ViscoelasticContact {
     /// Needs the feature `checkpoint`.
     ///
     /// The file is complete and on the medium when this returns; until then, what was there before is not touched. It
-    /// carries the version of its format, its length and a checksum. About 50 bytes per computed cell, 8 more for
-    /// each relaxation time, and 8 per cell of the whole grid, or of its computed part where the gap is symmetric.
+    /// carries the version of its format, a checksum and a fingerprint of the scene. About 50 bytes per computed cell, 8
+    /// more for each relaxation time, and, once the indenter has moved or changed, 8 per cell of the whole grid.
     ///
     /// ```
     /// use viscocontact::prelude::*;
@@ -65,22 +65,22 @@ impl ViscoelasticContact {
     /// grid, bodies, kernel, geometry and material. Settings may differ in how steps are solved (solver, tolerance,
     /// iterations, edge, memory), not in the rest. Where an indenter has moved, it is where it was.
     ///
-    /// Scenes are compared by sums over gap and influence and by the rigid body of each cell. Materials are compared
-    /// by their series, or, without a series, by their compliance at eight times a decade; closures with equal values
-    /// there count as equal. A run along a history that saved the contact
-    /// ([`Run::autosave_to`](crate::run::Run::autosave_to)) resumes with the next [`ViscoelasticContact::follow`].
+    /// Scenes are compared part by part, by numbers: the series of the material, sums over the gap and over the
+    /// coefficients of a kernel of one's own, the values of an attraction at some gaps. A run along a history that
+    /// saved the contact ([`Run::autosave_to`](crate::run::Run::autosave_to)) resumes with the next
+    /// [`ViscoelasticContact::follow`].
     ///
     /// Needs the feature `checkpoint`.
     ///
     /// # Errors
-    /// If the file cannot be read, is no checkpoint, is of a newer or older format, cut short, damaged, or of another
+    /// If the file cannot be read, is no checkpoint, is of another format, damaged or truncated, or of another
     /// scene ([`Error::Checkpoint`](crate::Error::Checkpoint)); the contact is then as it was.
     ///
     /// Where [ranks](crate::parallel) share out the contact, it is a call of all of them, which must all see the
     /// file. Each rank reads its rows and checks its part of the file. An error of one rank is an error on all
     /// ([`RanksError::Failed`](crate::parallel::RanksError::Failed)). Ranks cannot resume from a window of the grid
-    /// ([`Settings::window`](crate::contact::Settings::window)), nor after an indenter has moved
-    /// ([`CheckpointError::OtherScene`](crate::contact::CheckpointError::OtherScene)).
+    /// ([`Settings::window`](crate::contact::Settings::window)), nor after an indenter has moved or a load has broken
+    /// the symmetry of the scene ([`CheckpointError::OtherScene`](crate::contact::CheckpointError::OtherScene)).
     pub fn resume(&mut self, path: impl AsRef<Path>) -> Result<()> {
         let run = self.resume_with::<(Progress, StepControl)>(path.as_ref())?;
         self.saved_run = run.map(|run| Arc::new(run) as _);

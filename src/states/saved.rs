@@ -1,17 +1,16 @@
 //! The state of a contact on elastic states in a file.
 
 use std::borrow::Cow;
-use std::io;
 use std::path::Path;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::checkpoint::check_clocks;
 use crate::contact::checkpoint::format::{Input, Output};
+use crate::contact::checkpoint::scene::{of_rule, of_text};
+use crate::contact::checkpoint::{check_clocks, malformed};
 use crate::error::{CheckpointError, Error, Result};
 use crate::file::replace;
-use crate::hereditary::Interpolant;
 use crate::run::progress::Progress;
 use crate::states::contact::StatesContact;
 use crate::states::control::Record;
@@ -21,11 +20,6 @@ use crate::states::levels::Levels;
 /// The contents of a file.
 #[derive(Serialize, Deserialize)]
 struct Saved<'a> {
-    /// Distinguishes it from the state of a [`ViscoelasticContact`](crate::ViscoelasticContact).
-    kind: Cow<'a, str>,
-    /// Fingerprint of the elastic states.
-    states: u32,
-    interpolant: Interpolant,
     /// Time, reduced time, and the reduced time until which the bodies were undisturbed.
     times: [f64; 3],
     /// Approach that the last step prescribed.
@@ -36,8 +30,6 @@ struct Saved<'a> {
 
 /// A run that continues from the state.
 pub(super) type SavedRun = (Progress, Record);
-
-const KIND: &str = "elastic states";
 
 impl StatesContact {
     /// Saves the whole state to a file, from which a contact of the same states, material and time rule continues
@@ -54,15 +46,9 @@ impl StatesContact {
 
     /// [`StatesContact::save`] with a run that continues from there.
     pub(super) fn save_with(&self, path: &Path, run: Option<SavedRun>) -> Result<()> {
-        let (kind, states, interpolant) = (Cow::Borrowed(KIND), self.fingerprint(), self.scene.interpolant);
         let times = [self.time, self.reduced_time, self.undisturbed_until];
-        let (prescribed, levels) = (self.prescribed, Cow::Borrowed(&self.levels));
-        let saved = Saved { kind, states, interpolant, times, prescribed, levels, run };
-        replace(path, |out| {
-            let mut out = Output::begin(out)?;
-            postcard::to_io(&saved, &mut out).map_err(io::Error::other)?;
-            out.finish()
-        })
+        let saved = Saved { times, prescribed: self.prescribed, levels: Cow::Borrowed(&self.levels), run };
+        replace(path, |out| Output::begin(out, &self.parts(), &saved)?.finish())
     }
 
     /// Puts a saved state in the place of this one. The contact must be made of the same states and material, with
@@ -86,26 +72,10 @@ impl StatesContact {
 
     fn read(&self, path: &Path) -> Result<Saved<'static>, CheckpointError> {
         let mut file = Input::open(path)?;
-        let found = file.checksum()?;
-        file.require_checksum(found)?;
-        let saved: Saved<'static> = file.contents()?;
-        let malformed = |what: &str| Err(CheckpointError::Malformed { what: what.into() });
-        let other = |what, saved, built| Err(CheckpointError::OtherScene { what, saved, built });
-        if saved.kind != KIND {
-            return malformed("no contact on elastic states");
+        if !file.is_intact() {
+            return Err(CheckpointError::Damaged);
         }
-        let text = |number: u32| format!("{number:x}");
-        if saved.states != self.fingerprint() {
-            return other("elastic states", text(saved.states), text(self.fingerprint()));
-        }
-        if saved.interpolant != self.scene.interpolant {
-            let [saved, built] =
-                [saved.interpolant, self.scene.interpolant].map(|interpolant| format!("{interpolant:?}"));
-            return other("time rule", saved, built);
-        }
-        if !saved.levels.is_of_the_material_of(&self.levels) {
-            return other("material", "another".into(), "its own".into());
-        }
+        let saved: Saved<'static> = file.contents(&self.parts())?;
         let [time, reduced, undisturbed_until] = saved.times;
         if undisturbed_until > reduced
             || !saved.levels.fits(&self.levels)
@@ -117,13 +87,19 @@ impl StatesContact {
         if saved.run.as_ref().is_some_and(|(progress, record)| !progress.fits() || !record.fits()) {
             return malformed("a run that no contact can continue");
         }
-        check_clocks(time, reduced, self.scene.temperature.as_ref())?;
+        check_clocks([time, reduced], self.scene.temperature.as_ref())?;
         Ok(saved)
     }
 
-    /// Checksum of all numbers of the elastic states that this contact was made of.
-    fn fingerprint(&self) -> u32 {
+    /// What tells its scene from others.
+    fn parts(&self) -> [(&'static str, Vec<f64>); 5] {
         let ElasticStates { states, rest, tilt, .. } = &*self.scene.swept;
-        crc32fast::hash(format!("{states:?} {rest:?} {tilt:?}").as_bytes())
+        [
+            ("kind of contact", of_text(&"on elastic states")),
+            ("elastic states", of_text(&(states, rest, tilt))),
+            ("time rule", of_text(&self.scene.interpolant)),
+            ("material", of_rule(self.levels.history.rule())),
+            ("temperature", of_text(&self.scene.temperature)),
+        ]
     }
 }

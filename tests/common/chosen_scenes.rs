@@ -30,14 +30,6 @@ pub fn punch() -> AnyScene {
     AnyScene { settings: scene.settings.with_symmetry(false), ..scene }
 }
 
-/// A flat punch that is pressed upright first, so that its symmetry is given up.
-pub fn punch_that_loses_symmetry() -> AnyScene {
-    let punch = FlatPunch::rectangular([0.8e-3, 0.6e-3]).unwrap();
-    let at = |at: f64| Load::eccentric_force(1.0, [at, 0.0]);
-    let steps = vec![(0.0, Load::force(1.0)), (0.2, at(0.1e-3)), (0.2, at(0.12e-3)), (0.2, at(0.05e-3))];
-    AnyScene::plain("punch that loses symmetry", Grid::square(128, 1.2e-3).unwrap(), punch, Steps::Given(steps))
-}
-
 /// Waves on periodic bodies.
 pub fn rough() -> AnyScene {
     let grid = Grid::new([176, 192], [1.0e-3, 1.0e-3]).unwrap();

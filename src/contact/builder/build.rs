@@ -7,8 +7,6 @@ use crate::adhesion::{Attraction, laws, softening};
 use crate::contact::builder::LocalGap;
 use crate::contact::builder::memory::windowed;
 use crate::contact::builder::shared_gap::SharedGap;
-#[cfg(feature = "checkpoint")]
-use crate::contact::checkpoint::built::Built;
 use crate::contact::read::limits::Limits;
 use crate::contact::{Builder, Computation, Frame, Memory, Scene, Settings, State, ViscoelasticContact};
 use crate::elastic::ElasticContact;
@@ -176,7 +174,7 @@ impl Builder {
         specials.into_iter().filter(|(is, _)| *is).try_for_each(|(_, special)| self.is_covered(special))
     }
 
-    /// The scene with so many rigid bodies, without the fingerprint of their gap, and the history, on no cells yet.
+    /// The scene with so many rigid bodies, and the history, on no cells yet.
     pub(super) fn scene(&self, bodies: usize) -> Result<(Scene, History)> {
         let mut material = self.material.clone().ok_or(Error::Missing { part: "material" })?;
         if let Some(other) = self.counter_body.clone() {
@@ -198,15 +196,8 @@ impl Builder {
             self.attraction.as_deref().map(|law| resolved_softening(law, &material, &self.grid)).transpose()?;
         let attraction = self.attraction.clone();
         let ground = Ground { softening: softening.unwrap_or(0.0), attraction, ..ground };
-        let scene = Scene {
-            creep,
-            ground,
-            limits: Limits::of(&material),
-            material,
-            temperature: self.temperature.clone(),
-            #[cfg(feature = "checkpoint")]
-            built: Built::default(),
-        };
+        let scene =
+            Scene { creep, ground, limits: Limits::of(&material), material, temperature: self.temperature.clone() };
         Ok((scene, history))
     }
 }
@@ -243,8 +234,6 @@ fn assemble(
     region: Region,
     missed: Missed,
 ) -> ViscoelasticContact {
-    #[cfg(feature = "checkpoint")]
-    let scene = Scene { built: Built::new(indenter.gap(), &region.of_gap()), ..scene };
     let attracts = scene.ground.attraction.is_some();
     let computation = Computation::new(&scene, State::at_rest(indenter, region, history, attracts));
     ViscoelasticContact::new(scene, computation, missed)

@@ -1,30 +1,26 @@
 //! Checkpoint and resume: the state of a contact in a file, and on from there.
 
-pub(in crate::contact) mod built;
-mod fields;
+mod check;
 pub(crate) mod format;
-mod saved;
-mod scene_fingerprint;
+pub(crate) mod scene;
 
 use std::borrow::Cow;
-use std::io;
 use std::path::Path;
 use std::sync::Arc;
 
-use serde::Serialize;
 use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
 
 use crate::contact::{Computation, State, ViscoelasticContact};
-use crate::equilibrium::{Held, Indenter};
+use crate::equilibrium::{Held, Indenter, Region};
 use crate::error::{CheckpointError, Error, Result};
 use crate::geometry::Gap;
+use crate::hereditary::{Role, interleaved, runs};
 use crate::parallel::Rows;
-use built::Built;
-use fields::{FieldWriter, read_state};
+use check::check_fields;
+pub(crate) use check::{check_clocks, malformed};
 use format::{Input, Output};
-pub(crate) use saved::check_clocks;
-use saved::{Saved, check_fields, malformed, moved_indenter};
-use scene_fingerprint::difference;
+use scene::Parts;
 
 /// How far a run has come, as a file keeps it. Runs use contacts, so their type is a parameter here.
 pub(crate) trait SavedRun: Clone + Serialize + DeserializeOwned {
@@ -32,24 +28,46 @@ pub(crate) trait SavedRun: Clone + Serialize + DeserializeOwned {
     fn fits(&self) -> bool;
 }
 
+/// What the fields of a file follow.
+#[derive(Serialize, Deserialize)]
+#[serde(bound(deserialize = "P: SavedRun"))]
+struct Saved<'a, P: SavedRun> {
+    /// On the region of all ranks, without fields.
+    state: State,
+    /// The gap, where it is no longer the one built.
+    gap: Option<Cow<'a, Gap>>,
+    run: Option<Cow<'a, P>>,
+}
+
 impl ViscoelasticContact {
     /// [`ViscoelasticContact::save`] with how far a run along a history has come.
-    pub(crate) fn save_with<P: SavedRun>(&self, path: &Path, progress: Option<&P>) -> Result<()> {
-        let Held { region, indenter, .. } = &self.computation.state.held;
-        let above = &indenter.gap().above;
-        region.rows().replace_file(path, |out| {
-            let saved = Saved::of(self, progress);
-            let begun = out.map(|out| {
-                let mut out = Output::begin(out)?;
-                postcard::to_io(&saved, &mut out).map_err(io::Error::other)?;
-                Ok(out)
+    pub(crate) fn save_with<P: SavedRun>(&self, path: &Path, run: Option<&P>) -> Result<()> {
+        let state = &self.computation.state;
+        let Held { region, indenter, .. } = &state.held;
+        let rows = region.rows();
+        rows.replace_file(path, |out| {
+            let all = if region.is_shared() { Region::whole(&region.whole, region.folded()) } else { region.clone() };
+            let saved = Saved {
+                state: state.map(&all, &mut |_| Vec::new()),
+                gap: (!Arc::ptr_eq(indenter, &self.built)).then(|| Cow::Borrowed(indenter.gap())),
+                run: run.map(Cow::Borrowed),
+            };
+            let scene = self.parts();
+            let mut out = out.map(|out| Output::begin(out, &scene, &saved)).transpose();
+            state.each(&mut |field| {
+                let kept = if let Role::Work = field.role { 0 } else { field.per_cell };
+                for which in 0..kept {
+                    let own = runs([field.per_cell, which], region.len(), 0..region.len());
+                    let values = rows.on_first(own.flat_map(|run| &field.values[run]).copied().collect());
+                    // after an error, too: the other ranks send their rows
+                    if let Ok(Some(file)) = &mut out
+                        && let Err(error) = file.field(&values)
+                    {
+                        out = Err(error);
+                    }
+                }
             });
-            let mut fields = FieldWriter::new(begun);
-            fields.state(&self.computation.state);
-            let (gap, n2) = (saved.gap_region(self), self.scene.ground.grid.cells()[1]);
-            let place = |k| if gap.is_shared() { k } else { gap.cell(k)[0] * n2 + gap.cell(k)[1] };
-            fields.rows(&gap.rows(), |cells| cells.map(|k| above[place(k)]));
-            fields.finish()
+            out?.map_or(Ok(()), Output::finish)
         })
     }
 
@@ -57,7 +75,14 @@ impl ViscoelasticContact {
     pub(crate) fn resume_with<P: SavedRun>(&mut self, path: &Path) -> Result<Option<P>> {
         let rows = self.computation.state.held.region.rows();
         rows.unless_lost(|| {
-            let (mut state, progress) = self.read(path, &rows)?;
+            let failed = |cause| Error::Checkpoint { path: path.to_owned(), cause };
+            let scene = self.parts();
+            let mut file = rows.agree(Input::open(path).map_err(failed))?;
+            // not one save on one rank and the next on another
+            rows.same([f64::from(file.stated_checksum)])?;
+            let is_damaged = rows.any(rows.rank() == 0 && !file.is_intact());
+            let read = if is_damaged { Err(CheckpointError::Damaged) } else { self.read(&mut file, &scene) };
+            let (mut state, run) = rows.agree(read.map_err(failed))?;
             state.sum_up();
             if state.indenter_is_new {
                 // the indenter of the last step is not saved
@@ -67,56 +92,45 @@ impl ViscoelasticContact {
             rows.intact()?;
             self.computation = computation;
             self.view.refresh(&self.computation.state.held);
-            Ok(progress)
+            Ok(run)
         })
     }
 
-    /// The state in a file on the rows of this contact, and how far a run had come. A call of all ranks.
-    fn read<P: SavedRun>(&self, path: &Path, rows: &Rows) -> Result<(State, Option<P>)> {
-        let all = Agreement { path, rows };
-        let mut file = all.of(Input::open(path))?;
-        // not one save on one rank and the next on another
-        rows.same([f64::from(file.stated_checksum())])?;
-        let own = all.of(if rows.rank() == 0 { file.checksum() } else { Ok(0) })?;
-        all.of(file.require_checksum(rows.greatest(f64::from(own)) as u32))?;
-        let saved = file.contents::<Saved<'_, P>>().and_then(|saved| {
-            saved.check(self)?;
-            if file.has_values(saved.values(self)) { Ok(saved) } else { malformed("fields that do not fit its region") }
+    /// The state in a file on the local rows, and how far a run had come.
+    fn read<P: SavedRun>(&self, file: &mut Input, scene: &Parts) -> Result<(State, Option<P>), CheckpointError> {
+        let Saved { mut state, gap, run }: Saved<'_, P> = file.contents(scene)?;
+        self.check(&state, gap.as_deref())?;
+        if run.as_deref().is_some_and(|run| !run.fits()) {
+            return malformed("a run that no contact can continue");
+        }
+        let gap = gap.map(|gap| Arc::new(Indenter::new(gap.into_owned(), self.scene.ground.bodies)));
+        state.held.indenter = gap.unwrap_or_else(|| Arc::clone(&self.built));
+        let region = state.held.region.clone().shared_like(&self.computation.state.held.region);
+        let (rows, cells, mut sound) = (region.rows(), region.len(), Ok(()));
+        let state = state.map(&region, &mut |field| match field.role {
+            Role::Work => vec![0.0; field.per_cell * cells],
+            _ => interleaved(field.per_cell, cells, |_| {
+                file.field(&rows).unwrap_or_else(|error| {
+                    sound = Err(error);
+                    Vec::new()
+                })
+            }),
         });
-        let saved = all.of(saved)?;
-
-        let own = &self.computation.state;
-        let (region, gap_region) =
-            (saved.state.held.region.clone().shared_like(&own.held.region), saved.gap_region(self));
-        let read = read_state(&mut file, &saved.state, &region).and_then(|state| {
-            let Gap { datum, owner, .. } = saved.state.held.indenter.gap().clone();
-            let gap = Gap { datum, owner, above: file.rows(&gap_region.rows())? };
-            check_fields(&state, &gap).map(|()| (state, gap))
-        });
-        let (state, mut gap) = all.of(read)?;
-        let indenter = if region.is_shared() {
-            let moved = difference(&Built::new(&gap, &region).shape, &self.scene.built.shape).is_some();
-            all.of(if moved { Err(moved_indenter()) } else { Ok(()) })?;
-            own.held.indenter.with_gap_on(&region, gap)
-        } else {
-            let mut whole = vec![0.0; self.scene.ground.grid.len()];
-            gap_region.show(&gap.above, &mut whole);
-            gap.above = whole;
-            Indenter::new(gap, self.scene.ground.bodies)
-        };
-        let held = Held { indenter: Arc::new(indenter), ..state.held };
-        Ok((State { held, ..state }, saved.progress.map(Cow::into_owned)))
+        sound?;
+        check_fields(&state)?;
+        Ok((state, run.map(Cow::into_owned)))
     }
 }
 
-/// Makes an error of one rank that reads a file an error of all.
-struct Agreement<'a> {
-    path: &'a Path,
-    rows: &'a Rows,
-}
-
-impl Agreement<'_> {
-    fn of<T>(&self, own: Result<T, CheckpointError>) -> Result<T> {
-        self.rows.agree(own.map_err(|cause| Error::Checkpoint { path: self.path.to_owned(), cause }))
+impl Rows {
+    /// A field on all rows, of its local ones on each rank; nothing on ranks but the first. A call of all ranks.
+    fn on_first(&self, own: Vec<f64>) -> Vec<f64> {
+        if !self.are_shared() {
+            return own;
+        }
+        let count = |rank| if self.rank() == 0 { self.of(rank).len() * self.cells()[1] } else { 0 };
+        let mut pieces = vec![Vec::new(); self.ranks()];
+        pieces[0] = own;
+        self.exchange(pieces, count)
     }
 }

@@ -13,7 +13,7 @@ use crate::geometry::Gap;
 use crate::solver::{HaloRows, RigidMotion};
 
 /// The indenters of a contact where they are. Replaced whole when one of them moves or changes.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct Indenter {
     gap: Gap,
     /// Axes about whose middle the gap is even, bitwise.
@@ -78,16 +78,6 @@ impl Indenter {
         self.hulls[body].get_or_init(|| Hull::new(grid, touchable))
     }
 
-    /// The indenter of a rank with another rounding of the gap, on the local rows of the region of another state. A
-    /// call of all ranks.
-    #[cfg(feature = "checkpoint")]
-    pub(crate) fn with_gap_on(&self, region: &Region, gap: Gap) -> Indenter {
-        let built = self.even.get().copied().unwrap_or_default();
-        let even = OnceLock::from([0, 1].map(|axis| built[axis] || region.folded()[axis]));
-        let hulls = self.hulls.clone();
-        Indenter { even, hulls, is_local: true, ..Indenter::new(gap, 0) }.with_rows_beyond(region)
-    }
-
     /// The motion at which each body just touches the undeformed surface, upright.
     pub(crate) fn first_touch(&self) -> Vec<RigidMotion> {
         let lowest = |body: usize| {
@@ -120,25 +110,6 @@ pub(crate) fn even_axes_of(gaps: &[&Vec<f64>], cells: [usize; 2]) -> [bool; 2] {
         let (own, image) = (lowest(k), lowest(mirror));
         own.0 == image.0 && own.1 - datum == image.1 - datum
     })
-}
-
-/// Indenters in checkpoints: their gap without its heights, and how many bodies there are.
-#[cfg(feature = "checkpoint")]
-pub(crate) mod saved {
-    use std::sync::Arc;
-
-    use serde::{Deserialize, Deserializer, Serialize, Serializer};
-
-    use super::{Gap, Indenter};
-
-    pub(crate) fn serialize<S: Serializer>(indenter: &Arc<Indenter>, serializer: S) -> Result<S::Ok, S::Error> {
-        (&indenter.gap, indenter.bodies() as u16).serialize(serializer)
-    }
-
-    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Arc<Indenter>, D::Error> {
-        let (gap, bodies) = <(Gap, u16)>::deserialize(deserializer)?;
-        Ok(Arc::new(Indenter::new(gap, bodies.into())))
-    }
 }
 
 impl Indenter {

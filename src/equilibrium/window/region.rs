@@ -242,15 +242,6 @@ impl Region {
         [self.first[0] + k / n2, self.first[1] + k % n2]
     }
 
-    /// The cells of the whole grid that its cell `k` stands for.
-    #[cfg(feature = "checkpoint")]
-    pub(crate) fn images_of(&self, k: usize) -> impl Iterator<Item = [usize; 2]> {
-        let (all, [i, j], folded) = (self.whole.cells(), self.cell(k), self.folded);
-        let along = move |axis: usize, own: usize| [Some(own), folded[axis].then(|| all[axis] - 1 - own)];
-        let pairs = along(0, i).into_iter().flatten().map(move |i| (i, along(1, j)));
-        pairs.flat_map(|(i, columns)| columns.into_iter().flatten().map(move |j| [i, j]))
-    }
-
     /// The coordinates of its cell `k`.
     pub(crate) fn center(&self, k: usize) -> [f64; 2] {
         let n2 = self.cells()[1];

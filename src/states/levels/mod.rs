@@ -102,11 +102,6 @@ impl Levels {
         (self.level, self.force, self.motions, self.lift) = (other.level, other.force, other.motions, other.lift);
     }
 
-    #[cfg(feature = "checkpoint")]
-    pub(super) fn is_of_the_material_of(&self, other: &Levels) -> bool {
-        self.history.rule().is_of_the_material_of(other.history.rule())
-    }
-
     /// Whether these may be levels of the contact of `other`; a damaged file may hold any.
     #[cfg(feature = "checkpoint")]
     pub(super) fn fits(&self, other: &Levels) -> bool {

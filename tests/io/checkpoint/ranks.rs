@@ -11,6 +11,7 @@ use crate::common::watched_ranks::with_calls_left;
 use crate::common::{Temporary, builder_on, zener};
 use approx::assert_abs_diff_eq;
 use viscocontact::contact::CheckpointError;
+use viscocontact::load::Tilt;
 use viscocontact::parallel::{RanksError, Threads};
 use viscocontact::prelude::*;
 
@@ -72,14 +73,13 @@ fn files_that_are_not_whole_are_refused_by_all_ranks_alike() {
             };
             // cut short, longer, foreign
             for length in [10, 30, sound.len() / 2, sound.len() - 9] {
-                assert!(matches!(cause(&sound[..length]), CheckpointError::Size { .. }));
+                assert_eq!(cause(&sound[..length]), CheckpointError::Damaged);
             }
-            assert!(matches!(cause(&[&sound[..], &[0; 8]].concat()), CheckpointError::Size { .. }));
+            assert_eq!(cause(&[&sound[..], &[0; 8]].concat()), CheckpointError::Damaged);
             assert_eq!(cause(b"something else"), CheckpointError::Foreign);
             // damaged in the part of any rank, or in a number of values
             for at in [21, 40, sound.len() / 4, sound.len() / 2, 3 * sound.len() / 4, sound.len() - 1] {
-                let cause = cause(&damaged(at));
-                assert!(matches!(cause, CheckpointError::Damaged { .. } | CheckpointError::Size { .. }), "{at}");
+                assert_eq!(cause(&damaged(at)), CheckpointError::Damaged, "{at}");
             }
             // a value of one rank that no contact has, and a right checksum
             let mut forged = sound.clone();
@@ -122,14 +122,23 @@ fn checkpoints_that_ranks_cannot_resume_are_refused_by_name() {
     contact.step(0.0, Load::force(0.1)).unwrap();
     contact.save(&path).unwrap();
     for error in on(Some(2), windowed, |mut contact| Ok(contact.resume(&path).unwrap_err())) {
-        assert_eq!(what(error.unwrap()), "computed region");
+        assert!(what(error.unwrap()).starts_with("computed region"));
+    }
+    // a symmetry that a load has broken
+    let symmetric = || Ok(sphere()?.settings(Settings::default().with_window(false)));
+    let mut contact = symmetric().unwrap().build().unwrap();
+    let tilted = Load::Approach { approach: 1.0e-5, tilt: [Tilt::Fixed(1.0e-3), Tilt::Fixed(0.0)] };
+    contact.step(0.0, tilted).unwrap();
+    contact.save(&path).unwrap();
+    for error in on(Some(2), symmetric, |mut contact| Ok(contact.resume(&path).unwrap_err())) {
+        assert!(what(error.unwrap()).starts_with("computed region"));
     }
     // an indenter that has moved
     let mut contact = sphere().unwrap().build().unwrap();
     contact.step(0.0, Load::force(0.1)).unwrap();
     contact.set_geometry(&Shifted::new(Sphere::new(10.0e-3).unwrap(), [1.0e-4, 0.0]).unwrap()).unwrap();
     contact.save(&path).unwrap();
-    assert_eq!(what(refused(Some(2), &path)), "indenter");
+    assert!(what(refused(Some(2), &path)).starts_with("computed region"));
     sphere().unwrap().build().unwrap().resume(&path).unwrap();
 }
 

@@ -194,8 +194,8 @@ pub fn rows(t: &mut Table) {
     pressed().save(&path).unwrap();
     let bytes = std::fs::read(&path).unwrap();
     for (change, says) in [
-        (8, "…: the checkpoint is of format 112, this version reads format…"),
-        (bytes.len() - 3, "…: the checkpoint is damaged: its checksum is …, but should be …"),
+        (8, "…: the checkpoint is of format 119, this version reads format…"),
+        (bytes.len() - 3, "…: the checkpoint is damaged or truncated: its checksum is not that of…"),
     ] {
         let mut changed = bytes.clone();
         changed[change] ^= 99;
@@ -203,12 +203,12 @@ pub fn rows(t: &mut Table) {
         t.row("resume", resume(&path), File, says);
     }
     std::fs::write(&path, &bytes[..bytes.len() - 9]).unwrap();
-    t.row("resume", resume(&path), File, "…: the checkpoint holds … bytes, but should hold …");
+    t.row("resume", resume(&path), File, "…: the checkpoint is damaged or truncated:…");
     std::fs::write(&path, &bytes).unwrap();
     let other = sphere_on(grid(), zener(), plain).resume(&path);
-    t.row("resume", other, File, "…: the checkpoint is of another scene: its contact compliance…");
+    t.row("resume", other, File, "…: the checkpoint is of another scene: its material differs…");
     let of_ranks = shared(|mut contact| contact.resume(&path));
-    t.row("resume", of_ranks, File, "…computed region is a window of the grid (set Settings::window to false…");
+    t.row("resume", of_ranks, File, "…computed region (ranks need the whole grid…: save with Settings::window…");
 
     let steel = || Material::constant_poisson(Elastic::new(80.0e9).unwrap(), 0.3).unwrap();
     let bulk = Material::elastic_bulk(Zener::with_time(1.0e6, 0.5e6, 0.1).unwrap(), 1.0e9).unwrap();
