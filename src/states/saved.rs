@@ -87,7 +87,7 @@ impl StatesContact {
         if saved.run.as_ref().is_some_and(|(progress, record)| !progress.fits() || !record.fits()) {
             return malformed("a run that no contact can continue");
         }
-        check_clocks([time, reduced], self.scene.temperature.as_ref())?;
+        check_clocks(time, reduced, self.scene.temperature.as_ref())?;
         Ok(saved)
     }
 

@@ -69,6 +69,15 @@ fn sound_files() -> &'static [(usize, Vec<u8>)] {
             }
             contact.save(&path).expect("a file");
             files.push((scene, std::fs::read(&path).expect("a file")));
+            // once an indenter has moved, the file has its gap
+            let ball = |body: usize| Shifted::new(Sphere::new(5.0e-3)?, [2.0e-4 + 1.0e-3 * body as f64, 0.0]);
+            let moved: Vec<_> = (0..contact.fields().bodies()).map(|body| ball(body).expect("a ball")).collect();
+            let moved: Vec<&dyn Geometry> = moved.iter().map(|ball| ball as _).collect();
+            let mut aside = contact.clone();
+            if aside.set_geometries(&moved).is_ok() {
+                aside.save(&path).expect("a file");
+                files.push((scene, std::fs::read(&path).expect("a file")));
+            }
             let load = StepLoad::new(Load::force(0.1)).expect("a good load");
             if scene == 0 {
                 let mut run = contact.follow(&load, Stepping::adaptive(1e-2), 3.0);

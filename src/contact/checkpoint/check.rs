@@ -18,7 +18,8 @@ const CLOCKS_AGREE: f64 = 2e-5;
 
 /// Rejects a reduced time at `time` that the temperature does not lead to.
 pub(crate) fn check_clocks(
-    [time, reduced]: [f64; 2],
+    time: f64,
+    reduced: f64,
     temperature: Option<&TemperatureHistory>,
 ) -> Result<(), CheckpointError> {
     let own = temperature.map_or(time, |history| history.reduced_time(0.0, time).unwrap_or(f64::NAN));
@@ -60,7 +61,7 @@ impl ViscoelasticContact {
                 with Settings::window and symmetry set to false)";
             return Err(CheckpointError::OtherScene { what });
         }
-        check_clocks([clock.time, clock.reduced_time], self.scene.temperature.as_ref())
+        check_clocks(clock.time, clock.reduced_time, self.scene.temperature.as_ref())
     }
 }
 

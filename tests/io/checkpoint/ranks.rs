@@ -84,7 +84,7 @@ fn files_that_are_not_whole_are_refused_by_all_ranks_alike() {
             // a value of one rank that no contact has, and a right checksum
             let mut forged = sound.clone();
             let last = forged.len() - 8;
-            forged[last..].copy_from_slice(&(-1.0_f64).to_le_bytes());
+            forged[last..].copy_from_slice(&f64::NAN.to_le_bytes());
             seal(&mut forged);
             fs::write(&other, &forged).unwrap();
             let error = refused(size, &other);
