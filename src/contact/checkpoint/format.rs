@@ -20,8 +20,8 @@ const VERSION: u32 = 20;
 /// Where the checksum is, and where what it is of begins.
 const CHECKSUM: u64 = 12;
 const CONTENTS: u64 = 16;
-/// Bytes that are written or read at once.
-const PIECE: usize = 1 << 16;
+/// Bytes that are written or read at once, and values that ranks bring.
+pub(super) const PIECE: usize = 1 << 16;
 
 /// Passes on what is written, and finds its checksum.
 struct Hashed<W> {
@@ -57,7 +57,7 @@ impl<'a> Output<'a> {
         Ok(Output(out))
     }
 
-    pub(super) fn field(&mut self, values: &[f64]) -> io::Result<()> {
+    pub(super) fn values(&mut self, values: &[f64]) -> io::Result<()> {
         write_numbers(&mut self.0, values.iter().copied())
     }
 

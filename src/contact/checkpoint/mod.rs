@@ -5,6 +5,7 @@ pub(crate) mod format;
 pub(crate) mod scene;
 
 use std::borrow::Cow;
+use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -19,7 +20,7 @@ use crate::hereditary::{Role, interleaved, runs};
 use crate::parallel::Rows;
 use check::check_fields;
 pub(crate) use check::{check_clocks, malformed};
-use format::{Input, Output};
+use format::{Input, Output, PIECE};
 use scene::Parts;
 
 /// How far a run has come, as a file keeps it. Runs use contacts, so their type is a parameter here.
@@ -57,14 +58,18 @@ impl ViscoelasticContact {
             state.each(&mut |field| {
                 let kept = if let Role::Work = field.role { 0 } else { field.per_cell };
                 for which in 0..kept {
-                    let own = runs([field.per_cell, which], region.len(), 0..region.len());
-                    let values = rows.on_first(own.flat_map(|run| &field.values[run]).copied().collect());
-                    // after an error, too: the other ranks send their rows
-                    if let Ok(Some(file)) = &mut out
-                        && let Err(error) = file.field(&values)
-                    {
-                        out = Err(error);
-                    }
+                    let own = |cells: Range<usize>| {
+                        let own = runs([field.per_cell, which], region.len(), cells);
+                        own.flat_map(|run| &field.values[run]).copied().collect()
+                    };
+                    rows.in_pieces(own, |values| {
+                        // after an error, too: the other ranks send their rows
+                        if let Ok(Some(file)) = &mut out
+                            && let Err(error) = file.values(&values)
+                        {
+                            out = Err(error);
+                        }
+                    });
                 }
             });
             out?.map_or(Ok(()), Output::finish)
@@ -123,14 +128,23 @@ impl ViscoelasticContact {
 }
 
 impl Rows {
-    /// A field on all rows, of its local ones on each rank; nothing on ranks but the first. A call of all ranks.
-    fn on_first(&self, own: Vec<f64>) -> Vec<f64> {
-        if !self.are_shared() {
-            return own;
+    /// Gives a field on all rows, some of them at a time, from what `own` gives of local cells; nothing on ranks but the
+    /// first. A call of all ranks.
+    fn in_pieces(&self, own: impl Fn(Range<usize>) -> Vec<f64>, mut take: impl FnMut(Vec<f64>)) {
+        let [all, columns] = self.cells();
+        let most = (PIECE / columns).max(1);
+        for start in (0..all).step_by(most) {
+            let count = |rows: &Range<usize>| rows.end.min(start + most).saturating_sub(rows.start.max(start));
+            let local = self.own();
+            let first = columns * (local.start.max(start) - local.start);
+            let values = own(if count(&local) > 0 { first..first + columns * count(&local) } else { 0..0 });
+            if !self.are_shared() {
+                take(values);
+                continue;
+            }
+            let mut pieces = vec![Vec::new(); self.ranks()];
+            pieces[0] = values;
+            take(self.exchange(pieces, |rank| if self.rank() == 0 { columns * count(&self.of(rank)) } else { 0 }));
         }
-        let count = |rank| if self.rank() == 0 { self.of(rank).len() * self.cells()[1] } else { 0 };
-        let mut pieces = vec![Vec::new(); self.ranks()];
-        pieces[0] = own;
-        self.exchange(pieces, count)
     }
 }
