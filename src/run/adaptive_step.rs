@@ -7,7 +7,7 @@ use crate::error::{AdhesionError, Error, Result, StepError};
 use crate::events;
 use crate::hereditary::{StepContext, TimeError};
 use crate::load::Load;
-use crate::run::driven::Course;
+use crate::run::control::Course;
 use crate::run::halves::{Divided, Halves, add_work, greater};
 use crate::run::outlook::excess;
 use crate::run::step_control::{Proposal, StepControl};

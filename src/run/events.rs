@@ -3,7 +3,7 @@
 use crate::contact::StepReport;
 use crate::error::Result;
 use crate::load::LoadHistory;
-use crate::run::RunContact;
+use crate::run::Contact;
 use crate::run::event::{Crossing, Event};
 use crate::run::follow::Run;
 use crate::run::histories::Histories;
@@ -28,13 +28,13 @@ struct Look {
 }
 
 impl Look {
-    fn of<C: RunContact>(events: &[Event<C>], contact: &C) -> Result<Look> {
+    fn of<C: Contact>(events: &[Event<C>], contact: &C) -> Result<Look> {
         let beyond = events.iter().map(|event| event.beyond(contact)).collect::<Result<_>>()?;
         Ok(Look { time: contact.time(), beyond })
     }
 }
 
-impl<'a, C: RunContact> Run<'a, C> {
+impl<'a, C: Contact> Run<'a, C> {
     /// Makes a step end where a quantity of the contact crosses a value: where the force falls to 0, the area grows
     /// to a value, the approach passes one, or any function of the contact does. Leave the loop there, or go on to
     /// the next crossing:

@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::extent::Extent;
 use crate::hereditary::{Interval, Meeting, StepContext};
 use crate::load::Load;
-use crate::run::driven::Course;
+use crate::run::control::Course;
 use crate::run::step_control::StepControl;
 use crate::run::track::is_held;
 use crate::solver::Freedom;

@@ -41,7 +41,7 @@ const BEYOND: f64 = 16.0;
 #[derive(Debug)]
 pub(super) struct Beside {
     repeated: Repeated,
-    contacts: Contacts,
+    pub(super) contacts: Contacts,
     /// Level, depth and area of the elastic contacts that the curve goes through.
     rows: Vec<[f64; 3]>,
     by_force: bool,

@@ -38,7 +38,6 @@
 //! # Ok::<(), viscocontact::Error>(())
 //! ```
 
-mod as_contact;
 mod beside;
 mod closed_forms;
 mod contact;
@@ -49,13 +48,11 @@ mod elastic;
 mod fields;
 mod levels;
 mod outside;
-mod passage;
 mod pressed;
 mod profile;
 mod reach;
 mod refined;
 mod repeated;
-mod rounded;
 mod run;
 mod run_fields;
 #[cfg(feature = "checkpoint")]

@@ -7,7 +7,7 @@ use crate::error::{Result, positive};
 use crate::hereditary::Interpolant;
 use crate::load::{Load, LoadHistory, Tilt};
 use crate::rheology::{Material, TemperatureHistory};
-use crate::run::Stepping;
+use crate::run::{Contact, Stepping};
 use crate::states::contact::StatesContact;
 use crate::states::curve::ElasticStates;
 

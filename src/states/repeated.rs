@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::error::{Error, Result, StepError};
 use crate::hereditary::Interpolant;
 use crate::load::{Load, LoadHistory};
-use crate::run::Stepping;
+use crate::run::{Contact, Stepping};
 use crate::states::contact::StatesContact;
 use crate::states::curve::ElasticStates;
 use crate::states::profile::Profile;

@@ -1,14 +1,14 @@
 //! Fields of runs to an accuracy.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::contact::{Scene, ViscoelasticContact};
 use crate::equilibrium::Ground;
 use crate::error::{Result, count_within};
-use crate::fields::KeptFields;
 use crate::load::LoadHistory;
 use crate::run::Run;
-use crate::run::driven::{FieldFinder, FieldReport, FieldRequest, Prepared};
+use crate::run::control::{Exact, FieldFinder, FieldReport, FieldRequest, Prepared};
 use crate::run::field::MOST_FIELDS;
 use crate::states::beside::Beside;
 use crate::states::contact::StatesContact;
@@ -138,25 +138,27 @@ impl FieldFinder<ViscoelasticContact> for InSpace {
         contact: &ViscoelasticContact,
         history: &dyn LoadHistory,
         after: bool,
-    ) -> Result<(Option<KeptFields>, FieldReport)> {
+        cancelled: Option<&Arc<AtomicBool>>,
+    ) -> Result<(Option<Exact<ViscoelasticContact>>, FieldReport)> {
         let mut report = FieldReport::default();
         let beside = match self {
             InSpace::Unknown => return Ok((None, report)),
             InSpace::Refined(refined) => {
-                let (fields, error) = refined.fields(contact, history)?;
+                let (fields, error) = refined.fields(contact, history, cancelled.map(|flag| &**flag))?;
                 report.error = error;
-                return Ok((fields, report));
+                return Ok((fields.map(|fields| Exact::Fields(Box::new(fields))), report));
             }
             InSpace::Beside(beside) => beside,
         };
         let mut beside = beside.lock().unwrap_or_else(PoisonError::into_inner);
+        beside.contacts.cancelled = cancelled.cloned();
         let Some(found) = unless_refused(beside.pressure(history, contact.time(), after).map(Some))? else {
             return Ok((None, report));
         };
         [report.elastic_contacts, report.convolutions] = found.spent;
         let exact = contact.fields().keep().with_pressure(&found.pressure);
         report.error = Some(found.error).filter(|error| exact.is_some() && error.is_finite());
-        Ok((exact, report))
+        Ok((exact.map(|fields| Exact::Fields(Box::new(fields))), report))
     }
 }
 
@@ -176,13 +178,14 @@ impl FieldFinder<StatesContact> for OnStates {
         contact: &StatesContact,
         history: &dyn LoadHistory,
         after: bool,
-    ) -> Result<(Option<StatesContact>, FieldReport)> {
+        _: Option<&Arc<AtomicBool>>,
+    ) -> Result<(Option<Exact<StatesContact>>, FieldReport)> {
         let Some(run) = &self.0 else { return Ok((None, FieldReport::default())) };
         let mut run = run.lock().unwrap_or_else(PoisonError::into_inner);
         let accuracy = run.accuracy;
         let (found, error) = run.in_short_steps(history, (contact.time(), after), accuracy)?;
         Ok((
-            Some(found.contact),
+            Some(Exact::Contact(Box::new(found.contact))),
             FieldReport { error: Some(error).filter(|error| error.is_finite()), ..FieldReport::default() },
         ))
     }

@@ -12,9 +12,10 @@ use crate::contact::checkpoint::format::{Input, Output};
 use crate::error::{CheckpointError, Error, Result};
 use crate::file::replace;
 use crate::hereditary::Interpolant;
+use crate::run::doubled::Record;
 use crate::run::progress::Progress;
 use crate::states::contact::StatesContact;
-use crate::states::control::Record;
+use crate::states::control::OnLevels;
 use crate::states::curve::ElasticStates;
 use crate::states::levels::Levels;
 
@@ -35,7 +36,7 @@ struct Saved<'a> {
 }
 
 /// A run that continues from the state.
-pub(super) type SavedRun = (Progress, Record);
+pub(super) type SavedRun = (Progress, Record<OnLevels>);
 
 const KIND: &str = "elastic states";
 
@@ -114,7 +115,8 @@ impl StatesContact {
         {
             return malformed("levels that no contact has");
         }
-        if saved.run.as_ref().is_some_and(|(progress, record)| !progress.fits() || !record.fits()) {
+        if saved.run.as_ref().is_some_and(|(progress, record)| !progress.fits() || !record.fits() || !record.own.fits())
+        {
             return malformed("a run that no contact can continue");
         }
         check_clocks(time, reduced, self.scene.temperature.as_ref())?;

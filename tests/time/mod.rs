@@ -6,6 +6,7 @@ mod fields;
 mod fixed_steps;
 mod honest;
 mod inside;
+mod own_contact;
 mod protocols;
 mod protocols_run;
 mod returns;

@@ -2,26 +2,26 @@
 //! there.
 
 use crate::error::Result;
-use crate::run::SAME_TIME;
+use crate::run::progress::SAME_TIME;
 
 /// Number of equal parts of a step at which its load is looked at, besides the samples of the whole
 /// run within it.
-pub(super) const PARTS: usize = 8;
+pub(crate) const PARTS: usize = 8;
 /// An event so early in a step, as a part of it, happens at its start.
 const AT_START: f64 = 1e-3;
 
 /// Start and end of a step.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Span {
-    pub(super) now: f64,
-    pub(super) end: f64,
+pub(crate) struct Span {
+    pub(crate) now: f64,
+    pub(crate) end: f64,
 }
 
 /// The load at times of a step in ascending order, from its start to its end: force, or depth of
 /// the load point or of the far end of its spring. Each maximum and minimum of the others is among
 /// them as well.
 #[derive(Debug, Clone)]
-pub(super) struct Passage {
+pub(crate) struct Passage {
     points: Vec<(f64, f64)>,
     /// The load at the start, in the middle and at the end.
     marks: [f64; 3],
@@ -31,14 +31,14 @@ pub(super) struct Passage {
 
 impl Passage {
     /// For steps of a run that is looked at so many times: no step allocates.
-    pub(super) fn new(samples: usize) -> Passage {
+    pub(crate) fn new(samples: usize) -> Passage {
         let most = samples + PARTS + 1;
         Passage { points: Vec::with_capacity(2 * most), seen: Vec::with_capacity(most), marks: [0.0; 3] }
     }
 
     /// Looks at the load within a step that begins with a load of this size, at equal parts of the
     /// step and where the run was sampled.
-    pub(super) fn look(
+    pub(crate) fn look(
         &mut self,
         Span { now, end }: Span,
         first: f64,
@@ -77,19 +77,25 @@ impl Passage {
     }
 
     /// Maximum load.
-    pub(super) fn top(&self) -> f64 {
+    pub(crate) fn top(&self) -> f64 {
         self.points.iter().fold(f64::NEG_INFINITY, |most, point| point.1.max(most))
     }
 
+    /// The first time within the step at which the load is greater than before and after.
+    pub(crate) fn first_top(&self) -> Option<f64> {
+        let three = self.points.windows(3).find(|three| three[1].1 > three[0].1 && three[1].1 >= three[2].1)?;
+        Some(three[1].0)
+    }
+
     /// Whether the load ever falls below that at the start.
-    pub(super) fn falls(&self) -> bool {
+    pub(crate) fn falls(&self) -> bool {
         self.points.iter().any(|point| point.1 < self.marks[0])
     }
 
     /// Maximum deviation of the load from the parabola through the start, the middle and the end of
     /// the step. How far apart bodies are does not matter where this is more than `size`, the
     /// maximum load.
-    pub(super) fn bend(&self, size: f64) -> f64 {
+    pub(crate) fn bend(&self, size: f64) -> f64 {
         let near = |load: f64| load.max(-size);
         let ([a, b, c], Span { now, end }) = (self.marks.map(near), self.span());
         let off = |&(time, load): &(f64, f64)| {
@@ -100,7 +106,7 @@ impl Passage {
         self.points.iter().map(off).fold(0.0, f64::max)
     }
 
-    fn span(&self) -> Span {
+    pub(crate) fn span(&self) -> Span {
         let [first, .., last] = self.points[..] else { return Span { now: 0.0, end: 0.0 } };
         Span { now: first.0, end: last.0 }
     }
@@ -109,7 +115,7 @@ impl Passage {
     /// at its start part, or that are apart touch: where `load` passes `surface`, the depth that
     /// touches a surface that nothing presses on at a time, which only falls. Where they touch,
     /// they overlap by at most `overshoot`; where they part, they are apart by as much.
-    pub(super) fn first_event(
+    pub(crate) fn first_event(
         &self,
         mut touch: bool,
         overshoot: f64,
@@ -167,7 +173,7 @@ impl Passage {
 
     /// The first time within the step at which a force ends that acts at its start, or begins: the
     /// last one without force.
-    pub(super) fn first_change_of_force(&self, load: &mut impl FnMut(f64) -> Result<f64>) -> Result<Option<f64>> {
+    pub(crate) fn first_change_of_force(&self, load: &mut impl FnMut(f64) -> Result<f64>) -> Result<Option<f64>> {
         let (Span { now, end }, mut presses) = (self.span(), self.marks[0] > 0.0);
         let near = now + SAME_TIME * (end - now);
         for pair in self.points.windows(2) {
