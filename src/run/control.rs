@@ -119,6 +119,9 @@ pub trait Control<C>: Debug + Send + Sync {
     /// The maximum errors so far.
     fn worst(&self) -> ErrorBudget;
 
+    /// The times at which the load of each body bends, as far as the run was looked at before.
+    fn bends(&self) -> Vec<&[f64]>;
+
     /// A clone.
     fn boxed(&self) -> Box<dyn Control<C>>;
 

@@ -23,7 +23,7 @@ use crate::run::passage::{Passage, Span};
 use crate::run::progress::Progress;
 use crate::run::progress::{SAME_TIME, Stepping};
 use crate::run::rounded::Rounded;
-use crate::run::trace::{PARTS_OF_RUN, looks};
+use crate::run::trace::{bends, looks};
 
 /// First step after a jump or a corner, over the time to the next one.
 pub(crate) const FIRST_STEP: f64 = 1e-4;
@@ -53,8 +53,8 @@ pub(crate) trait Judge<C: Contact>: Default + Clone + Debug + Send + Sync + 'sta
         0.0
     }
 
-    /// Looks at the loads of the record, before the first step.
-    fn look(_: &mut Record<Self>) {}
+    /// Sees the times and sizes of the loads of the run, before the first step.
+    fn look(_: &mut Record<Self>, _: &[(f64, f64)]) {}
 
     /// A contact that tries steps.
     fn trial(contact: &C) -> C {
@@ -146,8 +146,8 @@ pub(crate) struct Record<J> {
     /// Whether forces are given throughout the run.
     pub(crate) by_force: bool,
     pub(crate) greatest: [f64; 2],
-    /// Times and loads at which the run was looked at, and the maximum load.
-    pub(crate) loads: Vec<(f64, f64)>,
+    /// Times at which the load of the run bends, unknown before it was looked at, and its maximum.
+    bends: Option<Vec<f64>>,
     pub(crate) greatest_load: f64,
     /// Loads below this one are lost in rounding.
     pub(crate) least_load: f64,
@@ -162,10 +162,10 @@ impl<J> Record<J> {
     #[cfg(feature = "checkpoint")]
     pub(crate) fn fits(&self) -> bool {
         let sizes = [self.next, self.greatest[0], self.greatest[1], self.greatest_load, self.least_load];
-        let times = self.loads.iter().flat_map(|(time, load)| [*time, *load]);
+        let times = self.bends.iter().flatten().copied();
         sizes.iter().all(|&size| size >= 0.0)
             && times.chain([self.start, self.until, self.next, self.corner]).all(f64::is_finite)
-            && self.loads.is_sorted_by_key(|load| load.0)
+            && self.bends.as_ref().is_none_or(|bends| bends.is_sorted())
     }
 
     /// Looks at the load of the run, which fails where there is none. A load that the contact has no size for fails
@@ -177,19 +177,16 @@ impl<J> Record<J> {
         let (mut loads, mut forces, mut others) = (Vec::new(), false, false);
         for look in looks(history, [contact.time(), self.until], contact.attracts()) {
             let (time, [before, at]) = look?;
-            let jumps = before != at && time > contact.time();
-            for load in [before, at].into_iter().skip(usize::from(!jumps)) {
+            for load in [before, at].into_iter().skip(usize::from(before == at)) {
                 (forces, others) = (forces || load.is_force(), others || !load.is_force());
                 loads.extend(J::size(contact, load).ok().map(|load| (time, load)));
             }
         }
-        (self.loads, self.by_force) = (loads, !others);
-        self.greatest_load = self.loads.iter().fold(0.0, |most, load| load.1.max(most));
+        (self.bends, self.by_force) = (Some(bends(&loads)), !others);
+        self.greatest_load = loads.iter().fold(0.0, |most, load| load.1.max(most));
         // of forces or of depths
         self.least_load = if forces != others { f64::EPSILON * self.greatest_load } else { 0.0 };
-        J::look(self);
-        let lost = self.loads.iter_mut().filter(|load| 0.0 < load.1 && load.1 < self.least_load);
-        lost.for_each(|load| load.1 = 0.0);
+        J::look(self, &loads);
         Ok(())
     }
 }
@@ -215,7 +212,7 @@ impl<C: Contact, J: Judge<C>> Doubled<C, J> {
     pub(crate) fn continued(contact: &C, record: Record<J>) -> Doubled<C, J> {
         let (before, whole) = (contact.clone(), J::trial(contact));
         let tries = Tries { halves: whole.clone(), middle: whole.clone(), whole };
-        Doubled { record, before, halved: false, tries, passage: Passage::new(PARTS_OF_RUN as usize + 1) }
+        Doubled { record, before, halved: false, tries, passage: Passage::default() }
     }
 
     /// The history that the steps follow.
@@ -225,7 +222,7 @@ impl<C: Contact, J: Judge<C>> Doubled<C, J> {
 
     fn take_step(&mut self, contact: &mut C, course: &Course<'_>) -> Result<StepReport> {
         let history = course.histories.first();
-        if self.record.tolerance > 0.0 && self.record.loads.is_empty() {
+        if self.record.tolerance > 0.0 && self.record.bends.is_none() {
             self.record.look(contact, history)?;
         }
         let rounded = self.rounded(contact, history);
@@ -265,7 +262,8 @@ impl<C: Contact, J: Judge<C>> Doubled<C, J> {
             }
             let mut end = if now + (1.0 + SAME_TIME) * length >= stop { stop } else { now + length };
             let size_at = |time: f64| J::size(contact, load_at(time)?);
-            self.passage.look(Span { now, end }, first, &self.record.loads, size_at)?;
+            let bends = self.record.bends.as_deref().unwrap_or_default();
+            self.passage.look(Span { now, end }, first, bends, size_at)?;
             self.record.greatest_load = self.record.greatest_load.max(self.passage.top());
             // deviations below the least normal number are rounding
             let straight = (BEND * self.record.greatest_load).max(f64::MIN_POSITIVE);
@@ -387,6 +385,10 @@ impl<C: Contact, J: Judge<C>> Control<C> for Doubled<C, J> {
 
     fn worst(&self) -> ErrorBudget {
         ErrorBudget { time: self.record.worst, ..ErrorBudget::default() }
+    }
+
+    fn bends(&self) -> Vec<&[f64]> {
+        self.record.bends.iter().map(|bends| &bends[..]).collect()
     }
 
     fn boxed(&self) -> Box<dyn Control<C>> {

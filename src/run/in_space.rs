@@ -134,6 +134,10 @@ impl Control<ViscoelasticContact> for StepControl {
         self.worst
     }
 
+    fn bends(&self) -> Vec<&[f64]> {
+        self.tracks.iter().map(|track| &track.scale.bends[..]).collect()
+    }
+
     fn boxed(&self) -> Box<dyn Control<ViscoelasticContact>> {
         Box::new(self.clone())
     }

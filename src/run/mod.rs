@@ -37,7 +37,6 @@ mod samples;
 #[cfg(feature = "checkpoint")]
 mod saving;
 mod step_control;
-mod tops;
 pub(crate) mod trace;
 mod track;
 

@@ -3,10 +3,14 @@
 
 use crate::error::Result;
 use crate::run::progress::SAME_TIME;
+use crate::run::trace::ROUNDING;
 
-/// Number of equal parts of a step at which its load is looked at, besides the samples of the whole
-/// run within it.
-pub(crate) const PARTS: usize = 8;
+/// Number of parts of a step at whose ends its load is looked at, of even number: the middle is one of them.
+const PARTS: usize = 64;
+/// The others are uneven by so much of a part, so that no oscillation is zero at all of them.
+const UNEVEN: f64 = 0.4;
+/// The golden ratio spreads multiples evenly.
+const GOLDEN: f64 = 0.618_033_988_749_895;
 /// An event so early in a step, as a part of it, happens at its start.
 const AT_START: f64 = 1e-3;
 
@@ -20,7 +24,7 @@ pub(crate) struct Span {
 /// The load at times of a step in ascending order, from its start to its end: force, or depth of
 /// the load point or of the far end of its spring. Each maximum and minimum of the others is among
 /// them as well.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Passage {
     points: Vec<(f64, f64)>,
     /// The load at the start, in the middle and at the end.
@@ -30,32 +34,26 @@ pub(crate) struct Passage {
 }
 
 impl Passage {
-    /// For steps of a run that is looked at so many times: no step allocates.
-    pub(crate) fn new(samples: usize) -> Passage {
-        let most = samples + PARTS + 1;
-        Passage { points: Vec::with_capacity(2 * most), seen: Vec::with_capacity(most), marks: [0.0; 3] }
-    }
-
-    /// Looks at the load within a step that begins with a load of this size, at equal parts of the
-    /// step and where the run was sampled.
+    /// Looks at the load within a step that begins with a load of this size, at parts of the step and at those of the
+    /// ascending `times` that lie within it.
     pub(crate) fn look(
         &mut self,
         Span { now, end }: Span,
         first: f64,
-        samples: &[(f64, f64)],
+        times: &[f64],
         mut load: impl FnMut(f64) -> Result<f64>,
     ) -> Result<()> {
-        let after = samples.partition_point(|sample| sample.0 <= now);
-        let mut others = samples[after..].iter().take_while(|sample| sample.0 < end).peekable();
+        let mut others = times[times.partition_point(|time| *time <= now)..].iter().copied().peekable();
         self.seen.clear();
         self.points.clear();
         self.seen.push((now, first));
         for k in 1..=PARTS {
-            let time = if k == PARTS { end } else { now + (end - now) * k as f64 / PARTS as f64 };
-            while let Some(other) = others.next_if(|other| other.0 < time) {
-                self.seen.push(*other);
+            let uneven = if k % (PARTS / 2) == 0 { 0.0 } else { UNEVEN * (k as f64 * GOLDEN).fract() };
+            let time = if k == PARTS { end } else { now + (end - now) * (k as f64 - uneven) / PARTS as f64 };
+            while let Some(other) = others.next_if(|other| *other < time) {
+                self.seen.push((other, load(other)?));
             }
-            others.next_if(|other| other.0 == time);
+            others.next_if_eq(&time);
             let value = load(time)?;
             self.seen.push((time, value));
             if k == PARTS / 2 {
@@ -81,10 +79,35 @@ impl Passage {
         self.points.iter().fold(f64::NEG_INFINITY, |most, point| point.1.max(most))
     }
 
-    /// The first time within the step at which the load is greater than before and after.
+    /// Looks at loads that were seen before.
+    pub(crate) fn show(&mut self, seen: &[(f64, f64)]) {
+        self.points.clear();
+        self.points.extend_from_slice(seen);
+    }
+
+    /// Loads within the step, apart from its ends, and their times.
+    pub(crate) fn inside(&self) -> impl Iterator<Item = (f64, f64)> {
+        self.points[1..].iter().copied().take(self.points.len().saturating_sub(2))
+    }
+
+    /// Times within the step at which the load turns, as far as this is not its rounding, and whether it is at a top.
+    pub(crate) fn turns(&self) -> impl Iterator<Item = (f64, bool)> {
+        let size = self.points.iter().fold(0.0, |most: f64, point| most.max(point.1.abs()));
+        let (mut last, mut rises) = (self.points.first().copied(), None);
+        self.points.iter().filter_map(move |point| {
+            let change = point.1 - last.map_or(point.1, |last| last.1);
+            if change.abs() <= ROUNDING * size {
+                return None;
+            }
+            let turn = last.replace(*point).filter(|_| rises.is_some_and(|rises| rises != (change > 0.0)));
+            rises = Some(change > 0.0);
+            turn.map(|turn| (turn.0, change < 0.0))
+        })
+    }
+
+    /// The first top of the load within the step.
     pub(crate) fn first_top(&self) -> Option<f64> {
-        let three = self.points.windows(3).find(|three| three[1].1 > three[0].1 && three[1].1 >= three[2].1)?;
-        Some(three[1].0)
+        self.turns().find(|turn| turn.1).map(|turn| turn.0)
     }
 
     /// Whether the load ever falls below that at the start.

@@ -22,8 +22,6 @@ use crate::states::repeated::{Found, Repeated, undisturbed};
 /// Levels of the first elastic contacts, from the greatest of the run: so many, each over the next.
 const FIRST_LEVELS: i32 = 5;
 const RATIO: f64 = 8.0;
-/// Number of even parts of a run at which its load is sampled.
-const PARTS: u32 = 512;
 /// Parts of the accuracy that the solver of an elastic body may leave, steps and the curve may, and the change of the
 /// level by the contacts of a field; the rest is for its levels.
 const OF_SOLVER: f64 = 1e-2;
@@ -68,7 +66,7 @@ impl Beside {
         accuracy: f64,
         (interpolant, start): (Interpolant, f64),
     ) -> Result<Option<Beside>> {
-        let all = sampled(course.history, [start, course.until], PARTS)?;
+        let all = sampled(course.history, [start, course.until])?;
         let tilt = all[0].tilt();
         let (by_force, is_free) =
             (all.iter().all(Load::is_force), tilt.iter().any(|tilt| matches!(tilt, Tilt::Free { .. })));

@@ -82,8 +82,8 @@ impl Judge<StatesContact> for OnLevels {
         contact.states.rest.approach
     }
 
-    fn look(record: &mut Record<OnLevels>) {
-        let Record { loads, greatest_load, start, until, .. } = record;
+    fn look(record: &mut Record<OnLevels>, loads: &[(f64, f64)]) {
+        let Record { greatest_load, start, until, .. } = record;
         // a body without elastic response has no depth as soon as the load acts
         let spells = loads.split(|load| load.1 < 0.5 * *greatest_load);
         let lengths = spells.filter_map(|spell| Some(spell.last()?.0 - spell.first()?.0));

@@ -7,12 +7,11 @@ use crate::error::{Result, positive};
 use crate::hereditary::Interpolant;
 use crate::load::{Load, LoadHistory, Tilt};
 use crate::rheology::{Material, TemperatureHistory};
+use crate::run::trace::looks;
 use crate::run::{Contact, Stepping};
 use crate::states::contact::StatesContact;
 use crate::states::curve::ElasticStates;
 
-/// Number of even parts of a run at whose ends the load is sampled.
-const PARTS: u32 = 4096;
 /// Number of even parts of a run at whose ends its level is sampled, and the tolerance of its steps.
 const LEVELS: u32 = 1024;
 const TOLERANCE: f64 = 1e-4;
@@ -92,7 +91,7 @@ pub(crate) struct Loading<'a> {
 impl Loading<'_> {
     fn reach(&self) -> Result<Reach> {
         positive("end of the run", self.until)?;
-        let all = sampled(self.history, [0.0, self.until], PARTS)?;
+        let all = sampled(self.history, [0.0, self.until])?;
         if all.iter().all(Load::is_force) {
             return Ok(Reach::Level(
                 MARGIN * self.greatest_level(all[0].tilt(), Interpolant::CorrectedLinear, LEVELS)?,
@@ -132,15 +131,11 @@ impl Loading<'_> {
     }
 }
 
-/// Loads at the ends of so many even parts of the time from a start to an end, and at the corners and jumps within.
-pub(crate) fn sampled(history: &dyn LoadHistory, [start, until]: [f64; 2], parts: u32) -> Result<Vec<Load>> {
+/// The loads of a run.
+pub(crate) fn sampled(history: &dyn LoadHistory, ends: [f64; 2]) -> Result<Vec<Load>> {
     let mut all = Vec::new();
-    for k in 0..=parts {
-        let time = start + (until - start) * f64::from(k) / f64::from(parts);
-        all.push(history.checked_at(time, false)?);
-    }
-    for corner in history.breakpoints(start).take_while(|&next| next <= until) {
-        all.extend([history.checked_before(corner, false)?, history.checked_at(corner, false)?]);
+    for look in looks(history, ends, false) {
+        all.extend(look?.1);
     }
     Ok(all)
 }

@@ -9,6 +9,7 @@ mod inside;
 mod own_contact;
 mod protocols;
 mod protocols_run;
+mod pulses;
 mod returns;
 mod run;
 mod several_histories;
