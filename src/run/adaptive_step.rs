@@ -5,7 +5,7 @@ use crate::contact::step::error_in_time::error_in_time;
 use crate::contact::{Step, StepReport, ViscoelasticContact};
 use crate::error::{AdhesionError, Error, Result, StepError};
 use crate::events;
-use crate::hereditary::{StepContext, TimeError};
+use crate::hereditary::{StepContext, TimeError, WEIGHTS};
 use crate::load::Load;
 use crate::run::control::Course;
 use crate::run::halves::{Divided, Halves, add_work, greater};
@@ -19,10 +19,6 @@ const MAX_SOLVER_RETRIES: u32 = 5;
 /// Order in the step length of the error due to cells that join the contact within the step: a shorter step ends sooner
 /// after they join.
 const ORDER_OF_KINKS: u32 = 2;
-
-/// The error of a step with a jump is multiplied by this: the state after a jump depends little on when it jumped,
-/// and on the energy lost.
-const JUMPED: f64 = 100.0;
 
 /// Takes one step as long as its error allows: proposes a length, checks the load within the step, tries the step,
 /// judges its error, and accepts it or tries a shorter one.
@@ -186,6 +182,6 @@ fn try_step(
     control.halves = Some(halves);
     let Divided { attempt, difference, errors } = divided?;
     let jumped = contact.passes().is_some_and(|passes| passes.jumped);
-    error.relative = greater(error.relative, difference) * if jumped { JUMPED } else { 1.0 };
+    error.relative = greater(error.relative, difference) * if jumped { WEIGHTS.jumped } else { 1.0 };
     Ok(Tried { attempt, error, excess, halves: Some(errors) })
 }

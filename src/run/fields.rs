@@ -5,11 +5,19 @@ use std::sync::{Mutex, PoisonError};
 use crate::error::{Result, count_within, within};
 use crate::run::Contact;
 use crate::run::control::{Exact, FieldFinder, FieldReport, FieldRequest, Prepared};
+use crate::run::error_budget::ErrorBudget;
 use crate::run::field::{MOST_FIELDS, RunFields};
 use crate::run::follow::Run;
 use crate::run::progress::Stepping;
 
 impl<'a, C: Contact> Run<'a, C> {
+    /// The errors of the run so far, by their source. That of the mesh of a contact in space is
+    /// [measured](crate::fields::Fields::mesh_error) by this call, in the present state.
+    pub fn error_budget(&self) -> ErrorBudget {
+        let mesh = self.contact.in_space().and_then(|fields| fields.mesh_error().unwrap_or_default());
+        ErrorBudget { field: self.worst_field(), mesh, ..self.control.worst() }
+    }
+
     /// Asks for fields to an accuracy.
     pub(crate) fn ask_for(mut self, finder: Box<dyn FieldFinder<C>>, accuracy: f64) -> Result<Run<'a, C>> {
         let bodies = self.histories.count();
@@ -57,7 +65,7 @@ impl<'a, C: Contact> Run<'a, C> {
     }
 
     /// The greatest error of the fields so far.
-    pub(super) fn worst_field(&self) -> Option<f64> {
+    fn worst_field(&self) -> Option<f64> {
         *self.fields.as_ref()?.worst.lock().unwrap_or_else(PoisonError::into_inner)
     }
 

@@ -10,7 +10,6 @@ use crate::load::{Load, LoadHistory};
 #[cfg(feature = "checkpoint")]
 use crate::run::autosave::Autosave;
 use crate::run::control::{Control, Course};
-use crate::run::error_budget::ErrorBudget;
 use crate::run::event::Event;
 use crate::run::field::RunFields;
 use crate::run::histories::{Histories, RunHistory};
@@ -383,13 +382,6 @@ impl<'a, C: Contact> Run<'a, C> {
     /// Number of steps rejected for their error, with [`Stepping::adaptive`].
     pub fn rejected_steps(&self) -> u64 {
         self.control.rejected()
-    }
-
-    /// The errors of the run so far, by their source. That of the mesh of a contact in space is
-    /// [measured](crate::fields::Fields::mesh_error) by this call, in the present state.
-    pub fn error_budget(&self) -> ErrorBudget {
-        let mesh = self.contact.in_space().and_then(|fields| fields.mesh_error().unwrap_or_default());
-        ErrorBudget { field: self.worst_field(), mesh, ..self.control.worst() }
     }
 
     /// The contact after the last step.

@@ -25,6 +25,7 @@ mod follow;
 mod halves;
 pub(crate) mod histories;
 mod in_space;
+pub(crate) mod judge;
 mod outlook;
 pub(crate) mod passage;
 mod past_steps;

@@ -4,17 +4,13 @@ use crate::contact::StepReport;
 use crate::error::Result;
 use crate::load::{Load, LoadHistory};
 use crate::run::Contact;
-use crate::run::doubled::{Judge, Record, Tries};
+use crate::run::judge::{Judge, Record, SMALL, Tries, WITHOUT_ORDER};
 use crate::run::passage::{Passage, Span};
 
 /// Part of the tolerance that the steps of a run share by their length, and each step beside that by its length over
 /// the time since the last jump or corner: the sum over a run of any number of steps is bounded.
 const OF_RUN: f64 = 0.5;
 const OF_DECADE: f64 = 0.03;
-/// Where bodies touch or part within a step there is no order: halves may be no better than the whole.
-const WITHOUT_ORDER: f64 = 2.0;
-/// Approaches and forces below this part of the maximum of the run count as if they were as large.
-const SMALL: f64 = 0.1;
 
 /// Nothing is known of the contact but the difference of two outcomes, and nothing of its rule in time but that its
 /// order is one at least: the halves err by no more than they differ from the whole.

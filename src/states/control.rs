@@ -10,7 +10,7 @@ use std::path::Path;
 use crate::contact::StepReport;
 use crate::error::Result;
 use crate::load::{Load, LoadHistory};
-use crate::run::doubled::{FIRST_STEP, Judge, MAX_GROWTH, Record, Tries};
+use crate::run::judge::{FIRST_STEP, Judge, MAX_GROWTH, Record, SMALL, Tries, WITHOUT_ORDER};
 use crate::run::passage::{Passage, Span};
 #[cfg(feature = "checkpoint")]
 use crate::run::progress::Progress;
@@ -28,25 +28,15 @@ const AIM_OF_RATES: f64 = 0.2;
 /// Two halves err by a third of their difference to the whole, as where the order is two: the curve between states
 /// has kinks in its curvature.
 const OF_HALVES: f64 = 1.0 / 3.0;
-/// Where there is no order, in a first step, the one after bodies touched and one in which they part,
-/// halves may be no better than the whole.
-const WITHOUT_ORDER: f64 = 2.0;
 /// Levels that were swept in a step are resolved by its length alone: their error does not add up over the steps, but
 /// over the taps that come back to them, and counts so much, chosen on 300 random runs that tap and part; less where
 /// forces are given throughout.
 const SWEPT: f64 = 0.2;
 const SWEPT_BY_FORCE: f64 = 0.05;
-/// Overshoot of the step that ends where bodies touch, in tolerances.
-const OVERSHOOT: f64 = 0.01;
+/// What hardly counts, in tolerances: the overshoot of a step that ends where bodies touch, and the merging of levels.
+const SLIGHT: f64 = 0.01;
 /// Contacts that get smaller than this part of the greatest level within a step are looked at inside its halves too.
 const SHALLOW: f64 = 0.3;
-/// Depth and force are not small, for errors relative to them, from this part of what the greatest load of the run
-/// will make of them.
-const EXPECTED: f64 = 0.1;
-/// Depths and forces below this part of their maximum count as if they were as large.
-const SMALL: f64 = 0.1;
-/// Groups of levels merge with this share of the tolerance.
-const MERGING: f64 = 0.01;
 
 /// What the loads of a run make of elastic states.
 #[derive(Debug, Clone, Default)]
@@ -112,7 +102,7 @@ impl Judge<StatesContact> for OnLevels {
     }
 
     fn accept(record: &Record<OnLevels>, contact: &mut StatesContact) {
-        contact.levels.merge(&contact.states, MERGING * record.tolerance);
+        contact.levels.merge(&contact.states, SLIGHT * record.tolerance);
     }
 
     fn turn(contact: &mut StatesContact) {
@@ -156,12 +146,7 @@ impl Judge<StatesContact> for OnLevels {
         }
         scratch.copy_from(contact);
         let scale = record.greatest[0].max(1e-3 * record.greatest_load);
-        passage.first_event(
-            touch,
-            OVERSHOOT * record.tolerance * scale,
-            &mut |time| scratch.surface_at(time),
-            &mut load,
-        )
+        passage.first_event(touch, SLIGHT * record.tolerance * scale, &mut |time| scratch.surface_at(time), &mut load)
     }
 
     /// How far the whole differs from the halves, in depth and force, relative to values that are not small in this
@@ -193,7 +178,7 @@ impl Judge<StatesContact> for OnLevels {
         let times = [*until, *pressed, rise[1]].map(|time| time / half);
         let expected = halves.levels.expected(&halves.states, demand, [*greatest_load, rise[0]], times);
         let greatest = OnLevels::greatest(record, halves);
-        let greatest = [0, 1].map(|k| greatest[k].max(EXPECTED * expected[k]));
+        let greatest = [0, 1].map(|k| greatest[k].max(SMALL * expected[k]));
         let results = |contact: &StatesContact| [contact.depth(), contact.force()];
         let ended = [&*whole, &*halves].map(results);
         // rates of a prescribed approach resist at once, and leave nothing behind

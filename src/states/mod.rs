@@ -57,6 +57,7 @@ mod run;
 mod run_fields;
 #[cfg(feature = "checkpoint")]
 mod saved;
+mod solved_curve;
 mod sweep;
 
 pub use crate::error::StatesError;

@@ -93,9 +93,7 @@ impl Loading<'_> {
         positive("end of the run", self.until)?;
         let all = sampled(self.history, [0.0, self.until])?;
         if all.iter().all(Load::is_force) {
-            return Ok(Reach::Level(
-                MARGIN * self.greatest_level(all[0].tilt(), Interpolant::CorrectedLinear, LEVELS)?,
-            ));
+            return Ok(Reach::Level(MARGIN * self.greatest_level(all[0].tilt(), Interpolant::CorrectedLinear, 0.0)?));
         }
         Ok(Reach::Loads(greatest(&all, self.softest_compliance()?).collect()))
     }
@@ -104,24 +102,30 @@ impl Loading<'_> {
         softest_compliance(&[self.material], self.temperature, self.until)
     }
 
-    /// An undisturbed contact on these states.
-    pub(crate) fn contact(&self, states: &Arc<ElasticStates>, interpolant: Interpolant) -> Result<StatesContact> {
-        let contact = StatesContact::new(states, self.material)?.with_interpolant(interpolant);
-        Ok(match self.temperature {
-            Some(temperature) => contact.with_temperature(temperature.clone()),
-            None => contact,
-        })
+    /// An undisturbed contact on these states at the start of a run.
+    pub(crate) fn undisturbed(
+        &self,
+        states: &Arc<ElasticStates>,
+        interpolant: Interpolant,
+        start: f64,
+    ) -> Result<StatesContact> {
+        let mut contact = StatesContact::new(states, self.material)?.with_interpolant(interpolant);
+        if let Some(temperature) = self.temperature {
+            contact = contact.with_temperature(temperature.clone());
+        }
+        if start > 0.0 {
+            contact.step_to(start, start, Load::Force { normal: 0.0, tilt: states.tilt })?;
+        }
+        Ok(contact)
     }
 
-    /// The greatest level at the ends of the steps and of so many even parts of a run under given forces; it does not
-    /// depend on the shape.
-    pub(crate) fn greatest_level(&self, tilt: [Tilt; 2], interpolant: Interpolant, parts: u32) -> Result<f64> {
-        let mut states = ElasticStates::sphere(1.0)?;
-        Arc::make_mut(&mut states).tilt = tilt;
-        let mut contact = self.contact(&states, interpolant)?;
-        let run = contact.follow(self.history, Stepping::adaptive(TOLERANCE), self.until);
-        let mut run = run.sample_at(Times::every(self.until / f64::from(parts)))?;
+    /// The greatest level at the ends of the steps and at even parts of a run from a `start` on under given forces; it
+    /// does not depend on the shape.
+    pub(crate) fn greatest_level(&self, tilt: [Tilt; 2], interpolant: Interpolant, start: f64) -> Result<f64> {
+        let mut contact = self.undisturbed(&states_of(tilt)?, interpolant, start)?;
         let mut greatest = 0.0_f64;
+        let run = contact.follow(self.history, Stepping::adaptive(TOLERANCE), self.until);
+        let mut run = run.sample_at(Times::every((self.until - start) / f64::from(LEVELS)))?;
         while run.next_step()?.is_some() {
             for sample in run.samples() {
                 greatest = greatest.max(sample?.contact().level());
@@ -129,6 +133,13 @@ impl Loading<'_> {
         }
         Ok(greatest)
     }
+}
+
+/// Some states under loads of this tilt: levels under given forces do not depend on the shape.
+pub(super) fn states_of(tilt: [Tilt; 2]) -> Result<Arc<ElasticStates>> {
+    let mut states = ElasticStates::sphere(1.0)?;
+    Arc::make_mut(&mut states).tilt = tilt;
+    Ok(states)
 }
 
 /// The loads of a run.

@@ -6,13 +6,13 @@ use std::sync::{Arc, Mutex, PoisonError};
 use crate::contact::{Scene, ViscoelasticContact};
 use crate::equilibrium::Ground;
 use crate::error::{Result, count_within};
-use crate::load::LoadHistory;
+use crate::load::{Load, LoadHistory};
 use crate::run::Run;
 use crate::run::control::{Exact, FieldFinder, FieldReport, FieldRequest, Prepared};
 use crate::run::field::MOST_FIELDS;
 use crate::states::beside::Beside;
 use crate::states::contact::StatesContact;
-use crate::states::reach::Loading;
+use crate::states::reach::{Loading, sampled};
 use crate::states::refined::Refined;
 use crate::states::repeated::Repeated;
 use crate::states::unless_refused;
@@ -151,7 +151,7 @@ impl FieldFinder<ViscoelasticContact> for InSpace {
             InSpace::Beside(beside) => beside,
         };
         let mut beside = beside.lock().unwrap_or_else(PoisonError::into_inner);
-        beside.contacts.cancelled = cancelled.cloned();
+        beside.curve.contacts.cancelled = cancelled.cloned();
         let Some(found) = unless_refused(beside.pressure(history, contact.time(), after).map(Some))? else {
             return Ok((None, report));
         };
@@ -169,7 +169,9 @@ struct OnStates(Option<Mutex<Repeated>>);
 impl FieldFinder<StatesContact> for OnStates {
     fn prepare(&mut self, contact: &StatesContact, request: &FieldRequest<'_>) -> Result<Prepared> {
         let FieldRequest { history, accuracy, until, .. } = *request;
-        self.0 = Some(Mutex::new(Repeated::new(contact.clone(), history, until, accuracy)?.0));
+        let by_force = sampled(history, [contact.time(), until])?.iter().all(Load::is_force);
+        let (repeated, _) = Repeated::new(contact.clone(), history, until, (by_force, accuracy))?;
+        self.0 = Some(Mutex::new(repeated));
         Ok(Prepared { stops: Vec::new(), tolerance: f64::INFINITY })
     }
 

@@ -12,7 +12,7 @@ use crate::contact::checkpoint::format::{Input, Output};
 use crate::error::{CheckpointError, Error, Result};
 use crate::file::replace;
 use crate::hereditary::Interpolant;
-use crate::run::doubled::Record;
+use crate::run::judge::Record;
 use crate::run::progress::Progress;
 use crate::states::contact::StatesContact;
 use crate::states::control::OnLevels;
