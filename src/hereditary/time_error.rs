@@ -28,8 +28,6 @@ pub(crate) struct ErrorMeasure<'a> {
     pub(crate) least: [f64; 2],
     /// The gap of the undeformed bodies.
     pub(crate) gap: &'a [f64],
-    /// Whether a free body was pressed by nothing before the step.
-    pub(crate) from_rest: bool,
     /// By how much the rigid body above a cell advances in the step.
     pub(crate) advance: &'a (dyn Fn(usize) -> f64 + Sync),
     /// C(age)/C(Δ), by which an error in u grows in the end if the next steps err alike: a step responds to a defect
@@ -107,7 +105,6 @@ impl History {
         let scales = [0, 1].map(|which| sizes[which].max(measure.least[which]));
         let Defect { signed, smooth, kinks, greatest, surface: [surface, of_surface], peak } =
             sums.defect(rule, context.resolution, context.is_last);
-        let kinks = if measure.from_rest { WEIGHTS.from_rest * kinks } else { kinks };
         let edge = if rule.has_dashpot() { WEIGHTS.edge } else { 1.0 };
         // bodies apart have no force that could be wrong, but a surface
         let matters = if pressed { measure.matters } else { [1.0, 0.0] };
@@ -118,8 +115,7 @@ impl History {
         let [in_contact, outside] = context.lasting;
         let lasting = relative(if pressed { in_contact } else { outside }, whole[0]);
         let lasting = if measure.matters[0] > 0.0 { lasting } else { 0.0 };
-        let growth = (1.0 + context.agreement * (measure.amplification - 1.0))
-            * (1.0 + WEIGHTS.lasting * (lasting / context.tolerance - WEIGHTS.tolerated).max(0.0));
+        let growth = 1.0 + context.agreement * (measure.amplification - 1.0);
         let kinks_of_u = (edge * kinks).max(sums.of_leaving(rule));
         let of_u = rule.compliance() * kinks_of_u.max(growth * smooth);
         let of_v = (WEIGHTS.edge * kinks).max(smooth);
@@ -138,9 +134,7 @@ impl History {
         };
         let on_meeting = |u: f64| relative(of_force * u, whole[1]).max(relative(of_approach * u, whole[0]));
         let on_return = on_meeting(outside);
-        let left = (on_return / context.tolerance).min(WEIGHTS.most_of_surface);
-        let error_on_return =
-            WEIGHTS.recovering * on_meeting(rule.compliance() * of_surface) * (1.0 + WEIGHTS.surface * left);
+        let error_on_return = WEIGHTS.recovering * on_meeting(rule.compliance() * of_surface);
         // single cells of the surface err by more than its mean, and so do their pressures when bodies meet them
         let of_cells = relative(peak, of_surface) * (on_return + error_on_return);
         let on_jump = relative(context.on_jump * (outside + rule.compliance() * peak), scales[1]);
@@ -310,7 +304,7 @@ impl Sums {
         let counts = !rule.has_dashpot() || rule.tried.dt > resolution;
         // the remaining cells take the load of cells that leave
         let shed = if self.touching > 0.0 { (self.touched / self.touching).max(1.0) } else { 1.0 };
-        let left = if counts { WEIGHTS.left * shed * self.left } else { 0.0 };
+        let left = if counts { shed * self.left } else { 0.0 };
         let kinks = greatest(&self.kinks).max(greatest(&self.kinks_within)).max(WEIGHTS.kinks * self.squares.sqrt());
         let kinks = if counts { kinks } else { 0.0 };
         Defect {

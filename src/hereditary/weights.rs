@@ -14,8 +14,6 @@ pub(crate) struct Weights {
     pub(crate) not_corrected: f64,
     /// Cells that leave do so in this part of the step at least.
     pub(crate) soon_left: f64,
-    /// Defects of cells that leave the contact count so many times: flat punches that tilt off.
-    pub(crate) left: f64,
     /// A force, and an immediate dashpot, press cells at the edge of the contact more than others: a rigid body
     /// presses hardest there.
     pub(crate) edge: f64,
@@ -23,20 +21,9 @@ pub(crate) struct Weights {
     pub(crate) kinks: f64,
     /// Errors that last count relative to this part of the maximum displacement at least.
     pub(crate) lasting_part: f64,
-    /// Part of the tolerance up to which errors left by earlier steps are ignored; ...
-    pub(crate) tolerated: f64,
-    /// ... beyond, the error of a step is multiplied by 1 + this weight times the excess, in tolerances.
-    pub(crate) lasting: f64,
     /// A defect of the free surface, to which the body comes back, is multiplied by this: defects of a surface that
     /// recovers have one sign.
     pub(crate) recovering: f64,
-    /// The weight, as `lasting`, of the errors that earlier steps have left on the free surface, ...
-    pub(crate) surface: f64,
-    /// ... and the most of these errors that counts, in tolerances.
-    pub(crate) most_of_surface: f64,
-    /// Bodies that nothing pressed before meet all their cells within a step, and their kinks agree: most of that
-    /// error is one of the pressure alone.
-    pub(crate) from_rest: f64,
     /// A body that comes back to a surface, however slowly, meets it with the modulus of this time, in times that
     /// matter.
     pub(crate) shortest_touch: f64,
@@ -62,16 +49,10 @@ pub(crate) const WEIGHTS: Weights = Weights {
     corrected_of_dashpot: 1.2,
     not_corrected: 0.25,
     soon_left: 0.05,
-    left: 2.0,
     edge: 3.0,
     kinks: 1.3,
     lasting_part: 0.5,
-    tolerated: 0.8,
-    lasting: 5.0,
     recovering: 3.0,
-    surface: 1.0,
-    most_of_surface: 3.0,
-    from_rest: 0.1,
     shortest_touch: 10.0,
     at_turn: 5.0,
     most_on_switch: 3e3,

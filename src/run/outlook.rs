@@ -71,7 +71,6 @@ impl StepControl {
             on_jump: jumps
                 .fold(0.0, |most, (load, history)| stiffness_on_jump(scene, load, &history.at(time)).max(most)),
             is_last: time == kink && !histories.each().all(|history| is_held(history, clock.time, time)),
-            tolerance: self.tolerance,
             agreement: self.past.agreement(),
             steps: self.past.count() + 1.0,
             resolution,

@@ -93,7 +93,7 @@ impl Loading<'_> {
         positive("end of the run", self.until)?;
         let all = sampled(self.history, [0.0, self.until])?;
         if all.iter().all(Load::is_force) {
-            return Ok(Reach::Level(MARGIN * self.greatest_level(all[0].tilt(), Interpolant::CorrectedLinear, 0.0)?));
+            return Ok(Reach::Level(MARGIN * self.greatest_level(all[0].tilt(), Interpolant::CorrectedLinear)?));
         }
         Ok(Reach::Loads(greatest(&all, self.softest_compliance()?).collect()))
     }
@@ -119,13 +119,12 @@ impl Loading<'_> {
         Ok(contact)
     }
 
-    /// The greatest level at the ends of the steps and at even parts of a run from a `start` on under given forces; it
-    /// does not depend on the shape.
-    pub(crate) fn greatest_level(&self, tilt: [Tilt; 2], interpolant: Interpolant, start: f64) -> Result<f64> {
-        let mut contact = self.undisturbed(&states_of(tilt)?, interpolant, start)?;
+    /// The greatest level at the ends of the steps and at even parts of a run under given forces.
+    fn greatest_level(&self, tilt: [Tilt; 2], interpolant: Interpolant) -> Result<f64> {
+        let mut contact = self.undisturbed(&states_of(tilt)?, interpolant, 0.0)?;
         let mut greatest = 0.0_f64;
         let run = contact.follow(self.history, Stepping::adaptive(TOLERANCE), self.until);
-        let mut run = run.sample_at(Times::every((self.until - start) / f64::from(LEVELS)))?;
+        let mut run = run.sample_at(Times::every(self.until / f64::from(LEVELS)))?;
         while run.next_step()?.is_some() {
             for sample in run.samples() {
                 greatest = greatest.max(sample?.contact().level());
