@@ -108,10 +108,8 @@ impl History {
         let edge = if rule.has_dashpot() { WEIGHTS.edge } else { 1.0 };
         // bodies apart have no force that could be wrong, but a surface
         let matters = if pressed { measure.matters } else { [1.0, 0.0] };
-        let whole = [
-            scales[0].max(WEIGHTS.lasting_part * measure.greatest[0]),
-            scales[1].max(measure.greatest[1]).max(context.greatest_on_switch),
-        ];
+        let whole =
+            [scales[0].max(measure.greatest[0]), scales[1].max(measure.greatest[1]).max(context.greatest_on_switch)];
         let [in_contact, outside] = context.lasting;
         let lasting = relative(if pressed { in_contact } else { outside }, whole[0]);
         let lasting = if measure.matters[0] > 0.0 { lasting } else { 0.0 };
@@ -289,7 +287,7 @@ impl Sums {
         let fallen = rule.tried.ratios[0] * self.fallen;
         let since = if fallen > 0.0 { 1.0 - self.released / fallen } else { 0.0 };
         let bend = self.signed / self.weight;
-        greatest(&Kinks::of(rule).at_end(bend / since.max(WEIGHTS.soon_left), bend))
+        greatest(&Kinks::of(rule).at_end(bend / since.max(f64::EPSILON), bend))
     }
 
     fn defect(&self, rule: &ExponentialRule, resolution: f64, is_last: bool) -> Defect {
@@ -305,7 +303,7 @@ impl Sums {
         // the remaining cells take the load of cells that leave
         let shed = if self.touching > 0.0 { (self.touched / self.touching).max(1.0) } else { 1.0 };
         let left = if counts { shed * self.left } else { 0.0 };
-        let kinks = greatest(&self.kinks).max(greatest(&self.kinks_within)).max(WEIGHTS.kinks * self.squares.sqrt());
+        let kinks = greatest(&self.kinks).max(greatest(&self.kinks_within)).max(self.squares.sqrt());
         let kinks = if counts { kinks } else { 0.0 };
         Defect {
             signed: scale * self.signed / self.weight,

@@ -12,15 +12,9 @@ pub(crate) struct Weights {
     pub(crate) corrected_of_dashpot: f64,
     /// ... and of one that is never put right, of linear steps. Fitted on one cell under smooth loads.
     pub(crate) not_corrected: f64,
-    /// Cells that leave do so in this part of the step at least.
-    pub(crate) soon_left: f64,
     /// A force, and an immediate dashpot, press cells at the edge of the contact more than others: a rigid body
     /// presses hardest there.
     pub(crate) edge: f64,
-    /// The kinks of cells that joined stay in the past, and those of successive steps do not cancel.
-    pub(crate) kinks: f64,
-    /// Errors that last count relative to this part of the maximum displacement at least.
-    pub(crate) lasting_part: f64,
     /// A defect of the free surface, to which the body comes back, is multiplied by this: defects of a surface that
     /// recovers have one sign.
     pub(crate) recovering: f64,
@@ -48,10 +42,7 @@ pub(crate) const WEIGHTS: Weights = Weights {
     corrected: 0.4,
     corrected_of_dashpot: 1.2,
     not_corrected: 0.25,
-    soon_left: 0.05,
     edge: 3.0,
-    kinks: 1.3,
-    lasting_part: 0.5,
     recovering: 3.0,
     shortest_touch: 10.0,
     at_turn: 5.0,
