@@ -431,8 +431,12 @@ fn a_flag_ends_the_search_for_a_field() {
             (found, cancelled)
         };
         let ((plain, none), (again, cancelled)) = (fields(false), fields(true));
-        assert!(plain.len() == 2 && none == 0 && cancelled > 0, "{} {none} {cancelled}", plain.len());
-        assert_eq!(plain, again);
+        assert!(plain.len() == 2 && again.len() == 2 && none == 0 && cancelled > 0, "{none} {cancelled}");
+        for (one, other) in plain.iter().zip(&again) {
+            // to the accuracy of both: contacts on the curve stay there
+            let off: f64 = one.iter().zip(other).map(|(one, other)| (one - other).abs()).sum();
+            assert!(off <= 2e-3 * one.iter().sum::<f64>(), "{off}");
+        }
     }
 }
 
