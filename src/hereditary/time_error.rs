@@ -132,7 +132,7 @@ impl History {
         };
         let on_meeting = |u: f64| relative(of_force * u, whole[1]).max(relative(of_approach * u, whole[0]));
         let on_return = on_meeting(outside);
-        let error_on_return = WEIGHTS.recovering * on_meeting(rule.compliance() * of_surface);
+        let error_on_return = on_meeting(rule.compliance() * of_surface);
         // single cells of the surface err by more than its mean, and so do their pressures when bodies meet them
         let of_cells = relative(peak, of_surface) * (on_return + error_on_return);
         let on_jump = relative(context.on_jump * (outside + rule.compliance() * peak), scales[1]);

@@ -15,12 +15,6 @@ pub(crate) struct Weights {
     /// A force, and an immediate dashpot, press cells at the edge of the contact more than others: a rigid body
     /// presses hardest there.
     pub(crate) edge: f64,
-    /// A defect of the free surface, to which the body comes back, is multiplied by this: defects of a surface that
-    /// recovers have one sign.
-    pub(crate) recovering: f64,
-    /// A body that comes back to a surface, however slowly, meets it with the modulus of this time, in times that
-    /// matter.
-    pub(crate) shortest_touch: f64,
     /// A corner of the temperature is one of the second derivative of u. The steps before do not show it: the estimate
     /// of the first step after it, which the next step does not put right, is too low by this factor times the ratio
     /// of the step before to this one.
@@ -43,8 +37,6 @@ pub(crate) const WEIGHTS: Weights = Weights {
     corrected_of_dashpot: 1.2,
     not_corrected: 0.25,
     edge: 3.0,
-    recovering: 3.0,
-    shortest_touch: 10.0,
     at_turn: 5.0,
     most_on_switch: 3e3,
     shortest: 0.03,

@@ -55,8 +55,8 @@ impl StepControl {
         let end = scene.reduced_time(clock, kink.min(*until))?;
         let span = end - self.since;
         let resolution = WEIGHTS.shortest * self.tolerance * span;
-        let on_switch = self.on_switch(scene, step.interval, age, WEIGHTS.shortest_touch * resolution)?;
-        let soon = 1.0 / scene.material.contact_compliance(WEIGHTS.shortest_touch * resolution);
+        let on_switch = self.on_switch(scene, step.interval, age, resolution)?;
+        let soon = 1.0 / scene.material.contact_compliance(resolution);
         let meetings = bodies().map(|(track, load)| track.scale.coming_back(scene, load, age, time));
         let meeting = meetings.reduce(Meeting::worst).unwrap_or(Meeting::NONE);
         let expected = bodies().map(|(track, load)| track.scale.expected(scene, load, age));
