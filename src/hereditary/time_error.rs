@@ -28,6 +28,8 @@ pub(crate) struct ErrorMeasure<'a> {
     pub(crate) least: [f64; 2],
     /// The gap of the undeformed bodies.
     pub(crate) gap: &'a [f64],
+    /// Whether a free body was pressed by nothing before the step.
+    pub(crate) from_rest: bool,
     /// By how much the rigid body above a cell advances in the step.
     pub(crate) advance: &'a (dyn Fn(usize) -> f64 + Sync),
     /// C(age)/C(Δ), by which an error in u grows in the end if the next steps err alike: a step responds to a defect
@@ -105,6 +107,7 @@ impl History {
         let scales = [0, 1].map(|which| sizes[which].max(measure.least[which]));
         let Defect { signed, smooth, kinks, greatest, surface: [surface, of_surface], peak } =
             sums.defect(rule, context.resolution, context.is_last);
+        let kinks = if measure.from_rest { WEIGHTS.from_rest * kinks } else { kinks };
         let edge = if rule.has_dashpot() { WEIGHTS.edge } else { 1.0 };
         // bodies apart have no force that could be wrong, but a surface
         let matters = if pressed { measure.matters } else { [1.0, 0.0] };

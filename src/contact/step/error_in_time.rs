@@ -96,6 +96,7 @@ pub(crate) fn error_in_time(scene: &Scene, tried: &Computation, step: &Step<'_>,
     let gap = &tried.window.gap(&step.indenter).above;
     let was_at_rest = trial.free.len() == 1 && tried.was_at_rest(0);
     let rests_at = was_at_rest.then(|| first_touch(tried, gap));
+    let from_rest = rests_at.is_some_and(|start| tried.since_touch(step, 0, start) == 1.0);
     let advance = |k: usize| tried.advance(step, rests_at, k);
     let measure = ErrorMeasure {
         rows: &state.held.region.rows(),
@@ -105,6 +106,7 @@ pub(crate) fn error_in_time(scene: &Scene, tried: &Computation, step: &Step<'_>,
         greatest,
         least,
         gap,
+        from_rest,
         advance: &advance,
         amplification: amplified(young, old),
         on_switch: one * (1.0 + agreement * (amplified(one, all) - 1.0)),
