@@ -223,8 +223,8 @@ pub use num_complex;
 /// ```
 pub mod prelude {
     pub use crate::contact::{
-        BodyState, Builder, Contact, Edge, Frame, Settings, Snapshot, StepError, StepReport, TimeRule,
-        ViscoelasticContact, Warnings,
+        BodyState, Builder, Edge, Frame, Settings, Snapshot, StepError, StepReport, TimeRule, ViscoelasticContact,
+        Warnings,
     };
     pub use crate::elastic::ElasticContact;
     pub use crate::fields::Fields;
@@ -243,7 +243,7 @@ pub mod prelude {
         Burgers, Elastic, FnRheology, FractionalMaxwell, FractionalZener, GeneralizedKelvin, GeneralizedMaxwell,
         KelvinVoigt, Kww, LogCreep, Material, Maxwell, PowerLaw, Rheology, SlowCreep, Tension, Zener,
     };
-    pub use crate::run::{Crossing, Run, Stepping, Times};
+    pub use crate::run::{Contact, Crossing, Run, Stepping, Times};
     #[cfg(feature = "sliding")]
     pub use crate::sliding::SteadySliding;
     #[cfg(feature = "states")]

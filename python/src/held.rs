@@ -8,11 +8,9 @@ use std::time::Duration;
 use pyo3::exceptions::{PyRuntimeError, PyTypeError};
 use pyo3::prelude::*;
 use viscocontact as vc;
-use viscocontact::contact::Contact;
-use viscocontact::fields::KeptFields;
 use viscocontact::load::LoadHistory;
 use viscocontact::rheology::{Elastic, Material};
-use viscocontact::run::{self as vr, Crossing, RunContact, Stepping};
+use viscocontact::run::{self as vr, Contact, Crossing, Stepping};
 use viscocontact::states::{ElasticStates, StatesContact as InStates};
 
 use crate::arrays::column;
@@ -96,7 +94,7 @@ impl Options {
     /// Refuses times that a run would refuse, which would take the contact with it.
     fn check(&self) -> vc::Result<()> {
         let small = InStates::new(&ElasticStates::sphere(1.0)?, &Material::incompressible(Elastic::new(1.0)?))?;
-        self.ask(small.led(Arc::clone(&self.history), self.stepping, self.until)).map(drop)
+        self.ask(small.into_follow(Arc::clone(&self.history), self.stepping, self.until)).map(drop)
     }
 
     fn ask<C: Led>(&self, run: vr::Run<'static, C>) -> vc::Result<vr::Run<'static, C>> {
@@ -109,16 +107,11 @@ impl Options {
     }
 }
 
-/// A contact that a run can lead.
-pub trait Led: RunContact + Contact + 'static {
+/// A contact that a run can lead, as an object of Python.
+pub trait Led: Contact {
     const IN_SPACE: bool;
 
-    fn led(self, history: Arc<dyn LoadHistory>, stepping: Stepping, until: f64) -> vr::Run<'static, Self>;
-
     fn with_fields(run: vr::Run<'static, Self>, accuracy: f64) -> vc::Result<vr::Run<'static, Self>>;
-
-    /// The fields of a sample, if it is one in space.
-    fn fields_of(sample: &vr::Sample<'_, Self>) -> Option<KeptFields>;
 
     /// The object of Python.
     fn into_object(self, py: Python<'_>, recipe: Recipe) -> PyResult<Py<PyAny>>;
@@ -128,23 +121,14 @@ pub trait Led: RunContact + Contact + 'static {
     }
 }
 
-/// How the contact in space and the one on elastic states are led, and their objects.
+/// The objects of the contact in space and of the one on elastic states.
 macro_rules! led {
-    ($($contact:ty, $in_space:literal, $fields:expr => $class:ty;)*) => {$(
+    ($($contact:ty, $in_space:literal => $class:ty;)*) => {$(
         impl Led for $contact {
             const IN_SPACE: bool = $in_space;
 
-            fn led(self, history: Arc<dyn LoadHistory>, stepping: Stepping, until: f64) -> vr::Run<'static, Self> {
-                self.into_follow(history, stepping, until)
-            }
-
             fn with_fields(run: vr::Run<'static, Self>, accuracy: f64) -> vc::Result<vr::Run<'static, Self>> {
                 run.fields_to(accuracy)
-            }
-
-            fn fields_of(sample: &vr::Sample<'_, Self>) -> Option<KeptFields> {
-                let fields: fn(&vr::Sample<'_, Self>) -> Option<KeptFields> = $fields;
-                fields(sample)
             }
 
             fn into_object(self, py: Python<'_>, recipe: Recipe) -> PyResult<Py<PyAny>> {
@@ -155,8 +139,8 @@ macro_rules! led {
 }
 
 led! {
-    vc::ViscoelasticContact, true, |sample| Some(sample.fields().keep()) => crate::contact::ViscoelasticContact;
-    InStates, false, |_| None => crate::states_contact::StatesContact;
+    vc::ViscoelasticContact, true => crate::contact::ViscoelasticContact;
+    InStates, false => crate::states_contact::StatesContact;
 }
 
 /// A contact, or the run that owns it.
@@ -212,7 +196,8 @@ impl<C: Led> Held<C> {
         self.free()?;
         let Held::Free(contact) = std::mem::replace(self, Held::Lost) else { return Err(lost()) };
         let number = NEXT.fetch_add(1, Ordering::Relaxed);
-        let run = contact.led(Arc::clone(&options.history), options.stepping, options.until).cancelled_by(cancel);
+        let run =
+            contact.into_follow(Arc::clone(&options.history), options.stepping, options.until).cancelled_by(cancel);
         let mut run = options.ask(run).or_raise()?;
         if let Some((path, every)) = &options.autosave {
             run = run.autosave_to(path, *every);

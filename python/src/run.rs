@@ -280,7 +280,7 @@ fn watched<C: Led>(py: Python<'_>, given: &Bound<'_, PyAny>, recipe: &Recipe) ->
 
 /// What is kept of a sample.
 fn kept<C: Led>(sample: &vr::Sample<'_, C>) -> (Report, Option<vr::FieldReport>, Option<KeptFields>, C) {
-    (*sample.report(), sample.field(), C::fields_of(sample), sample.contact().clone())
+    (*sample.report(), sample.field(), sample.in_space().map(|fields| fields.keep()), sample.contact().clone())
 }
 
 /// What the samples that were asked for have.

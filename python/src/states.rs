@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use viscocontact::contact::Settings;
 use viscocontact::output::{Metadata, read_states, write_states};
-use viscocontact::run::Stepping;
+use viscocontact::run::{Contact, Stepping};
 use viscocontact::states as st;
 use viscocontact::{self as vc};
 
@@ -243,7 +243,7 @@ impl ElasticStates {
             let material = &material.get().material;
             let rows = py.detach(|| -> vc::Result<Vec<[f64; 4]>> {
                 let contact = st::StatesContact::new(&self.states, material)?;
-                let run = contact.led(Arc::clone(&history), Stepping::adaptive(tolerance), until);
+                let run = contact.into_follow(Arc::clone(&history), Stepping::adaptive(tolerance), until);
                 let (mut run, mut rows) = (run.sample_at(&times)?, Vec::with_capacity(times.len()));
                 while run.next_step()?.is_some() {
                     rows.extend(asked_for(&run, |sample| sample.contact().state())?);

@@ -47,7 +47,7 @@ pub use read::report::{Estimated, StepReport};
 pub use read::stress::StressHistory;
 pub use state::snapshot::Snapshot;
 pub use step::attraction::PassReport;
-pub use stepper::{Contact, ViscoelasticContact};
+pub use stepper::ViscoelasticContact;
 
 pub use crate::equilibrium::{Edge, Figures, Frame, Settings, TimeRule, Warnings};
 pub(crate) use computation::Computation;

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use Special::{Attraction, FixedToBodies, FixedToIndenter, Ranks, SteadyMotion};
+use Special::{Attraction, FixedToBodies, FixedToIndenter, OwnContact, Ranks, SteadyMotion};
 
 use super::{Error, Result};
 
@@ -20,6 +20,8 @@ pub enum Special {
     FixedToBodies,
     /// The grid is fixed to the indenter ([`Frame::Indenter`](crate::contact::Frame::Indenter)).
     FixedToIndenter,
+    /// The contact is of a user's own type ([`Contact`](crate::run::Contact)).
+    OwnContact,
 }
 
 impl fmt::Display for Special {
@@ -30,6 +32,7 @@ impl fmt::Display for Special {
             Ranks => "on rows that ranks share out",
             FixedToBodies => "on a grid that is fixed to the bodies",
             FixedToIndenter => "on a grid that is fixed to the indenter",
+            OwnContact => "of a contact of your own",
         })
     }
 }
@@ -69,6 +72,9 @@ not_covered! {
     OTHER_GEOMETRY: "another geometry", Ranks: ONE_PROCESS;
     BROKEN_SYMMETRY: "a load that breaks the symmetry of the scene (unless Settings::symmetry is false)",
         Ranks: ONE_PROCESS;
+
+    #[cfg(feature = "checkpoint")]
+    RUN_IN_FILE: "a run in a file", OwnContact: "keep its state by code of your own, after each step (Run::contact)";
 
     // observations
     STRESS: "the stress below the surface", Ranks: ONE_PROCESS, Attraction: STRESS_OF_TRACTION;

@@ -33,6 +33,7 @@ mod remembered_field;
 mod rule_tests;
 mod step_context;
 mod time_error;
+mod weights;
 
 pub(crate) use branch_energies::BranchEnergies;
 pub(crate) use exponential_rule::{ExponentialRule, Interpolant};
@@ -45,3 +46,4 @@ pub(crate) use interval::{HistoryInputs, Interval};
 pub(crate) use lasting_error::LastingError;
 pub(crate) use step_context::{Meeting, StepContext};
 pub(crate) use time_error::{ErrorMeasure, TimeError};
+pub(crate) use weights::WEIGHTS;

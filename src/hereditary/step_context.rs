@@ -32,9 +32,8 @@ pub(crate) struct StepContext {
     pub(crate) expected: [f64; 2],
     /// How the bodies may meet again.
     pub(crate) meeting: Meeting,
-    /// The mean errors of u that earlier steps have left, in contact and outside, and the tolerance of each step.
+    /// The mean errors of u that earlier steps have left, in contact and outside.
     pub(crate) lasting: [f64; 2],
-    pub(crate) tolerance: f64,
     /// Where a given approach is to follow a given force: the errors of u at that moment, each over the glassy
     /// compliance, that a unit of a defect of v leaves in this step and in all steps; 0 where none is to follow.
     pub(crate) on_switch: [f64; 2],
@@ -67,7 +66,6 @@ impl Default for StepContext {
             expected: [0.0; 2],
             meeting: Meeting::default(),
             lasting: [0.0; 2],
-            tolerance: 1.0,
             on_switch: [0.0; 2],
             greatest_on_switch: 0.0,
             on_jump: 0.0,

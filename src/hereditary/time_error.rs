@@ -7,6 +7,7 @@ use crate::hereditary::exponential_rule::ExponentialRule;
 use crate::hereditary::history::History;
 use crate::hereditary::kink::Kinks;
 use crate::hereditary::step_context::{Meeting, StepContext};
+use crate::hereditary::weights::WEIGHTS;
 use crate::parallel::Rows;
 use crate::sum::{add, greatest, named_sums};
 
@@ -63,37 +64,8 @@ pub(crate) struct TimeError {
     pub(crate) lasting: f64,
 }
 
-/// Share of the defect of a step that is left once the next has put it right, and of one that is not put right.
-const CORRECTED: f64 = 0.4;
-const CORRECTED_OF_DASHPOT: f64 = 1.2;
-const NOT_CORRECTED: f64 = 0.25;
 /// Rounding of a difference of displacements, relative to these.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
-/// Cells that leave do so in this part of the step at least.
-const SOON_LEFT: f64 = 0.05;
-/// Defects of cells that leave the contact count twice.
-const LEFT: f64 = 2.0;
-/// A force, and an immediate dashpot, press cells at the edge of the contact more than others: a rigid body presses
-/// hardest there.
-const EDGE: f64 = 3.0;
-/// The kinks of cells that joined stay in the past, and the kinks of successive steps do not cancel.
-const LASTING: f64 = 1.3;
-/// Errors that last count relative to this part of the greatest displacement at least.
-const LASTING_PART: f64 = 0.5;
-/// Part of the tolerance up to which errors left by earlier steps are ignored.
-const TOLERATED: f64 = 0.8;
-/// The error of a step is multiplied by 1 + this weight times the excess, in tolerances.
-const LASTING_WEIGHT: f64 = 5.0;
-/// A defect of the free surface, to which the body comes back, is multiplied by this: defects of a surface that
-/// recovers have one sign.
-const RECOVERING: f64 = 3.0;
-/// The weight, as that above, of the errors that earlier steps have left on the free surface.
-const SURFACE_WEIGHT: f64 = 1.0;
-/// The most of these errors that counts, in tolerances.
-const MOST_OF_SURFACE: f64 = 3.0;
-/// Bodies that nothing pressed before meet all their cells within a step, and their kinks agree: most of that error
-/// is one of the pressure alone.
-const FROM_REST: f64 = 0.1;
 
 impl History {
     /// The estimated error of the step tried; 0 where too few steps before it are known.
@@ -135,22 +107,19 @@ impl History {
         let scales = [0, 1].map(|which| sizes[which].max(measure.least[which]));
         let Defect { signed, smooth, kinks, greatest, surface: [surface, of_surface], peak } =
             sums.defect(rule, context.resolution, context.is_last);
-        let kinks = if measure.from_rest { FROM_REST * kinks } else { kinks };
-        let edge = if rule.has_dashpot() { EDGE } else { 1.0 };
+        let kinks = if measure.from_rest { WEIGHTS.from_rest * kinks } else { kinks };
+        let edge = if rule.has_dashpot() { WEIGHTS.edge } else { 1.0 };
         // bodies apart have no force that could be wrong, but a surface
         let matters = if pressed { measure.matters } else { [1.0, 0.0] };
-        let whole = [
-            scales[0].max(LASTING_PART * measure.greatest[0]),
-            scales[1].max(measure.greatest[1]).max(context.greatest_on_switch),
-        ];
+        let whole =
+            [scales[0].max(measure.greatest[0]), scales[1].max(measure.greatest[1]).max(context.greatest_on_switch)];
         let [in_contact, outside] = context.lasting;
         let lasting = relative(if pressed { in_contact } else { outside }, whole[0]);
         let lasting = if measure.matters[0] > 0.0 { lasting } else { 0.0 };
-        let growth = (1.0 + context.agreement * (measure.amplification - 1.0))
-            * (1.0 + LASTING_WEIGHT * (lasting / context.tolerance - TOLERATED).max(0.0));
+        let growth = 1.0 + context.agreement * (measure.amplification - 1.0);
         let kinks_of_u = (edge * kinks).max(sums.of_leaving(rule));
         let of_u = rule.compliance() * kinks_of_u.max(growth * smooth);
-        let of_v = (EDGE * kinks).max(smooth);
+        let of_v = (WEIGHTS.edge * kinks).max(smooth);
         let error_of_u = if matters[0] > 0.0 { relative(of_u, scales[0]) } else { 0.0 };
         let error_of_v = if matters[1] > 0.0 { matters[1] * relative(of_v, scales[1]) } else { 0.0 };
         // an error of the surface counts by the force with which the bodies meet it again, and where a spring gives
@@ -166,8 +135,7 @@ impl History {
         };
         let on_meeting = |u: f64| relative(of_force * u, whole[1]).max(relative(of_approach * u, whole[0]));
         let on_return = on_meeting(outside);
-        let left = (on_return / context.tolerance).min(MOST_OF_SURFACE);
-        let error_on_return = RECOVERING * on_meeting(rule.compliance() * of_surface) * (1.0 + SURFACE_WEIGHT * left);
+        let error_on_return = on_meeting(rule.compliance() * of_surface);
         // single cells of the surface err by more than its mean, and so do their pressures when bodies meet them
         let of_cells = relative(peak, of_surface) * (on_return + error_on_return);
         let on_jump = relative(context.on_jump * (outside + rule.compliance() * peak), scales[1]);
@@ -177,7 +145,7 @@ impl History {
             relative: error.max(error_on_return),
             by_kinks: error >= error_on_return
                 && error > error_on_switch
-                && if error_of_u > error_of_v { kinks_of_u > growth * smooth } else { EDGE * kinks > smooth },
+                && if error_of_u > error_of_v { kinks_of_u > growth * smooth } else { WEIGHTS.edge * kinks > smooth },
             greatest: relative(greatest, scales[1]).max(of_cells).max(on_jump),
             sizes: if pressed { sizes } else { [0.0; 2] },
             defect: [signed, smooth],
@@ -322,29 +290,29 @@ impl Sums {
         let fallen = rule.tried.ratios[0] * self.fallen;
         let since = if fallen > 0.0 { 1.0 - self.released / fallen } else { 0.0 };
         let bend = self.signed / self.weight;
-        greatest(&Kinks::of(rule).at_end(bend / since.max(SOON_LEFT), bend))
+        greatest(&Kinks::of(rule).at_end(bend / since.max(f64::EPSILON), bend))
     }
 
     fn defect(&self, rule: &ExponentialRule, resolution: f64, is_last: bool) -> Defect {
         let scale = match rule.missing() {
-            Some((_, missing)) if rule.corrects() && rule.has_dashpot() => CORRECTED_OF_DASHPOT * missing,
-            Some((_, missing)) if rule.corrects() && !is_last => CORRECTED * missing,
+            Some((_, missing)) if rule.corrects() && rule.has_dashpot() => WEIGHTS.corrected_of_dashpot * missing,
+            Some((_, missing)) if rule.corrects() && !is_last => WEIGHTS.corrected * missing,
             Some((_, missing)) if rule.corrects() => missing,
             // the greatest of |s (s − Δ)| is Δ²/4, as in the error of u
-            Some(_) => NOT_CORRECTED * 0.25 / rule.tried.span / rule.compliance(),
+            Some(_) => WEIGHTS.not_corrected * 0.25 / rule.tried.span / rule.compliance(),
             None => 0.0,
         };
         let counts = !rule.has_dashpot() || rule.tried.dt > resolution;
         // the remaining cells take the load of cells that leave
         let shed = if self.touching > 0.0 { (self.touched / self.touching).max(1.0) } else { 1.0 };
-        let left = if counts { LEFT * shed * self.left } else { 0.0 };
-        let kinks = greatest(&self.kinks).max(greatest(&self.kinks_within)).max(LASTING * self.squares.sqrt());
+        let left = if counts { shed * self.left } else { 0.0 };
+        let kinks = greatest(&self.kinks).max(greatest(&self.kinks_within)).max(self.squares.sqrt());
         let kinks = if counts { kinks } else { 0.0 };
         Defect {
             signed: scale * self.signed / self.weight,
             smooth: scale * (self.absolute / self.weight).max(left),
             kinks: kinks / self.touching.max(1.0),
-            greatest: (EDGE * self.sharpest).max(scale * self.steepest),
+            greatest: (WEIGHTS.edge * self.sharpest).max(scale * self.steepest),
             surface: [self.surface, self.absolute_surface]
                 .map(|sum| if sum == 0.0 { 0.0 } else { scale * sum / self.depth }),
             peak: scale * self.peak,

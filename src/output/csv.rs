@@ -4,10 +4,11 @@ use std::fs::{self, File};
 use std::io::{self, BufRead};
 use std::path::{Path, PathBuf};
 
-use crate::contact::{Contact, StepReport};
+use crate::contact::StepReport;
 use crate::error::{Result, exact_length};
 use crate::file::{Appending, check_regular, failed};
 use crate::output::{Earlier, Kept, Metadata};
+use crate::run::Contact;
 
 /// A column of every history: its name, and its cell in the row of a step.
 type Column<C> = (&'static str, fn(&C, &StepReport) -> String);
@@ -58,8 +59,8 @@ fn known(value: Option<f64>) -> String {
 /// separated by commas: `time [s]`, `step length [s]`, `force [N]`, `approach [m]`, `tilt 1 [rad]`, `tilt 2 [rad]`,
 /// `moment 1 [N m]`, `moment 2 [N m]`, `contact area [m2]`, `contact cells`, `mean pressure [Pa]`, `max pressure
 /// [Pa]`, cost and accuracy of the step as in [`StepReport`] (`time error` is empty where nothing was estimated), and
-/// additional columns of your choice. A [`Contact`] is one in space or one on elastic states; moments and the
-/// greatest pressure of the latter are empty. Where [ranks](crate::parallel) share out the contact, all of them make
+/// additional columns of your choice. A [`Contact`] is one in space, on elastic states, or your own; without fields,
+/// moments and greatest pressure are empty. Where [ranks](crate::parallel) share out the contact, all of them make
 /// and write the history, and rank 0 has the file.
 /// [`Run::samples`](crate::run::Run::samples) has rows between the ends of steps: pass the contact and the report of each sample.
 /// Numbers have enough digits to be read back bitwise. In Python: `pandas.read_csv(path, comment="#")`.

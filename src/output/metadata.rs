@@ -1,9 +1,10 @@
 //! The description of a run in its files.
 
-use crate::contact::{Contact, Settings};
+use crate::contact::Settings;
 use crate::fields::{About, Fields};
 use crate::output::Field;
 use crate::rheology::{Material, TemperatureHistory, Volume};
+use crate::run::Contact;
 
 /// Units of the values written besides the fields.
 const UNITS: [(&str, &str); 7] = [

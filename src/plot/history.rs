@@ -1,8 +1,8 @@
 //! Quantities of a contact over time.
 
-use crate::contact::Contact;
 use crate::error::{Result, exact_length};
 use crate::plot::{COLORS, Chart, Legend, Quantity, Style};
+use crate::run::Contact;
 
 /// A quantity of a contact that a [`History`] records.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

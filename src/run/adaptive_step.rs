@@ -5,11 +5,12 @@ use crate::contact::step::error_in_time::error_in_time;
 use crate::contact::{Step, StepReport, ViscoelasticContact};
 use crate::error::{AdhesionError, Error, Result, StepError};
 use crate::events;
-use crate::hereditary::{StepContext, TimeError};
+use crate::hereditary::{StepContext, TimeError, WEIGHTS};
 use crate::load::Load;
-use crate::run::driven::Course;
+use crate::run::control::Course;
 use crate::run::halves::{Divided, Halves, add_work, greater};
 use crate::run::outlook::excess;
+use crate::run::passage::Span;
 use crate::run::step_control::{Proposal, StepControl};
 use crate::run::track::{Track, presses};
 
@@ -18,10 +19,6 @@ const MAX_SOLVER_RETRIES: u32 = 5;
 /// Order in the step length of the error due to cells that join the contact within the step: a shorter step ends sooner
 /// after they join.
 const ORDER_OF_KINKS: u32 = 2;
-
-/// The error of a step with a jump is multiplied by this: the state after a jump depends little on when it jumped,
-/// and on the energy lost.
-const JUMPED: f64 = 100.0;
 
 /// Takes one step as long as its error allows: proposes a length, checks the load within the step, tries the step,
 /// judges its error, and accepts it or tries a shorter one.
@@ -35,7 +32,8 @@ pub(super) fn adaptive_step(
     let (state, now) = (&computation.state, computation.state.clock.time);
     control.begin(scene, state, histories, until)?;
     let tolerance = control.solver_tolerance(scene);
-    let touch = if state.is_undisturbed() { control.first_touch(histories, now, course.stop) } else { f64::INFINITY };
+    let before = Span { now, end: course.stop };
+    let touch = if state.is_undisturbed() { control.first_touch(histories, before)? } else { f64::INFINITY };
     let (kink, mut stop) = (course.kink.min(touch), course.stop.min(touch));
     let mut loads = std::mem::take(&mut control.loads);
     let (mut wasted, mut failures, mut tried) = ([0; 2], 0, f64::INFINITY);
@@ -49,20 +47,19 @@ pub(super) fn adaptive_step(
         let mut step = contact.request(time, time - now, &loads, tolerance)?;
         step.cancelled = course.cancelled;
         let dt = step.interval.dt;
-        let ends = histories.each().map(|history| history.at(now)).zip(&loads);
-        control.tracks.iter_mut().zip(ends).for_each(|(track, (start, end))| track.look([&start, end]));
+        control.look(histories, Span { now, end: time })?;
         // what happens at a top of the load within the step would not show at its end
-        if let Some(top) = control.first_top(histories, now, time, |_, track| track.is_parted()) {
+        if let Some(top) = control.first_top(histories, |_, track| track.is_parted()) {
             stop = top;
             continue;
         }
-        let straying = control.straying(scene, state, histories, time, |track| !track.is_parted())?;
+        let straying = control.straying(scene, state, histories, |track| !track.is_parted())?;
         if straying > control.tolerance {
             control.judge(proposal, dt, straying);
             continue;
         }
         // the path of bodies that stay apart does not matter
-        let apart = control.straying(scene, state, histories, time, Track::is_parted)?;
+        let apart = control.straying(scene, state, histories, Track::is_parted)?;
         let outlook = control.outlook(scene, state, &step, course, kink)?;
         step.interval.interpolant = scene.ground.settings.adaptive_interpolant();
         step.tolerance = control.solver_tolerance_before_meeting(scene, &step, &outlook);
@@ -89,7 +86,7 @@ pub(super) fn adaptive_step(
         let parts = |body: usize, track: &Track| {
             track.is_driven && !track.is_apart && !computed.state.attracts && !presses(&contact.scene, computed, body)
         };
-        if let Some(top) = control.first_top(histories, now, time, parts) {
+        if let Some(top) = control.first_top(histories, parts) {
             add_work(&mut wasted, computed);
             (stop, control.rejected) = (top, control.rejected + 1);
             continue;
@@ -185,6 +182,6 @@ fn try_step(
     control.halves = Some(halves);
     let Divided { attempt, difference, errors } = divided?;
     let jumped = contact.passes().is_some_and(|passes| passes.jumped);
-    error.relative = greater(error.relative, difference) * if jumped { JUMPED } else { 1.0 };
+    error.relative = greater(error.relative, difference) * if jumped { WEIGHTS.jumped } else { 1.0 };
     Ok(Tried { attempt, error, excess, halves: Some(errors) })
 }

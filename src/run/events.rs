@@ -2,23 +2,18 @@
 
 use crate::contact::StepReport;
 use crate::error::Result;
-use crate::load::LoadHistory;
-use crate::run::RunContact;
+use crate::run::Contact;
 use crate::run::event::{Crossing, Event};
 use crate::run::follow::Run;
-use crate::run::histories::Histories;
+use crate::run::passage::{Passage, Span};
 use crate::run::progress::SAME_TIME;
 
 /// Looks within a step for the time of an event: bisection alone needs 20 to 1e-6 of the step.
 const MOST_LOOKS: u32 = 60;
 /// Attempts to end a step at the first event in it.
 const MOST_ATTEMPTS: u32 = 8;
-/// Equal parts of a step at whose ends its load is looked at.
-const PARTS: u32 = 64;
 /// Halvings of a part of a step between two turns of its load.
 const HALVINGS: u32 = 6;
-/// A load turns where it changes by more than this part of its greatest value.
-const ROUNDING: f64 = 1e-9;
 
 /// How far the quantities of all events are beyond their values, at a time within a step.
 #[derive(Clone)]
@@ -28,13 +23,13 @@ struct Look {
 }
 
 impl Look {
-    fn of<C: RunContact>(events: &[Event<C>], contact: &C) -> Result<Look> {
+    fn of<C: Contact>(events: &[Event<C>], contact: &C) -> Result<Look> {
         let beyond = events.iter().map(|event| event.beyond(contact)).collect::<Result<_>>()?;
         Ok(Look { time: contact.time(), beyond })
     }
 }
 
-impl<'a, C: RunContact> Run<'a, C> {
+impl<'a, C: Contact> Run<'a, C> {
     /// Makes a step end where a quantity of the contact crosses a value: where the force falls to 0, the area grows
     /// to a value, the approach passes one, or any function of the contact does. Leave the loop there, or go on to
     /// the next crossing:
@@ -60,8 +55,8 @@ impl<'a, C: RunContact> Run<'a, C> {
     /// ```
     ///
     /// A quantity that lies beyond the value when the run begins has to come back first. The time of a crossing is
-    /// found to a millionth of a step. Each step is looked at where its load turns, as 64 equal parts of it show, and
-    /// in the middle between. Where a quantity comes as near to its value as it bends, or a quarter of its change,
+    /// found to a millionth of a step. Each step is looked at where its load turns, as 64 parts of it show, and in
+    /// the middle between. Where a quantity comes as near to its value as it bends, or a quarter of its change,
     /// the part is halved again, six times at most. So two crossings are missed where both lie within a 64th of a
     /// part between two turns, or where the load turns twice within a 64th of the step. In space each look costs a
     /// contact problem and a copy of the contact, a crossing about ten. Where [ranks](crate::parallel) share out the
@@ -129,12 +124,25 @@ impl<'a, C: RunContact> Run<'a, C> {
     /// Looks within the last step, from its start to its end.
     fn looks(&self, events: &[Event<C>], start: &C) -> Result<Vec<Look>> {
         let (mut looks, end) = (vec![Look::of(events, start)?], Look::of(events, self.contact())?);
-        for turn in turns(&self.histories, start.time(), end.time) {
+        for turn in self.turns(start.time(), end.time)? {
             let turn = Look::of(events, &self.sample_within_step(turn)?.0)?;
             self.look_until(events, &mut looks, turn, 0)?;
         }
         self.look_until(events, &mut looks, end, 0)?;
         Ok(looks)
+    }
+
+    /// Times within a step at which a load turns, ascending.
+    fn turns(&self, now: f64, end: f64) -> Result<Vec<f64>> {
+        let (mut turns, bends, mut passage) = (Vec::new(), self.control.bends(), Passage::default());
+        for (body, history) in self.histories.each().enumerate() {
+            let bends = bends.get(body).copied().unwrap_or_default();
+            passage.look(Span { now, end }, history.at(now).main(), bends, |time| Ok(history.before(time).main()))?;
+            turns.extend(passage.turns().map(|turn| turn.0));
+        }
+        turns.sort_by(f64::total_cmp);
+        turns.dedup();
+        Ok(turns)
     }
 
     /// Adds looks after the last one: in the middle before `end`, more where a quantity may cross its value twice,
@@ -161,33 +169,6 @@ fn hides_crossings([start, middle, end]: [f64; 3]) -> bool {
     let (bend, change) = ((start - 2.0 * middle + end).abs(), (end - start).abs());
     let nearest = start.abs().min(middle.abs()).min(end.abs());
     if (start >= 0.0) == (end >= 0.0) { nearest < bend.max(0.25 * change) } else { 2.0 * bend > change }
-}
-
-/// Times within a step at which a load turns, ascending.
-fn turns(histories: &Histories<'_>, from: f64, to: f64) -> Vec<f64> {
-    let mut turns: Vec<f64> = histories.each().flat_map(|history| turns_of(history, from, to)).collect();
-    turns.sort_by(f64::total_cmp);
-    turns.dedup();
-    turns
-}
-
-/// Times within a step at which its load turns, as equal parts of the step show.
-fn turns_of(history: &dyn LoadHistory, from: f64, to: f64) -> Vec<f64> {
-    let time = |k: u32| from + (to - from) * f64::from(k) / f64::from(PARTS);
-    let load = |k: u32| if k < PARTS { history.at(time(k)) } else { history.before(to) };
-    let loads: Vec<f64> = (0..=PARTS).map(|k| load(k).main()).collect();
-    let least = ROUNDING * loads.iter().fold(0.0, |most: f64, load| most.max(load.abs()));
-    let (mut turns, mut before) = (Vec::new(), 0.0);
-    for k in 1..=PARTS as usize {
-        let change = loads[k] - loads[k - 1];
-        if change.abs() > least {
-            if change * before < 0.0 {
-                turns.push(time(k as u32 - 1));
-            }
-            before = change;
-        }
-    }
-    turns
 }
 
 /// The first time found at which the quantity is beyond the value, at most `same` after one at which it is not: by

@@ -1,7 +1,7 @@
 //! The maximum of a quantity within a step.
 
 use crate::error::{Result, finite};
-use crate::run::RunContact;
+use crate::run::Contact;
 use crate::run::follow::Run;
 
 /// Equal parts of a step at whose ends a quantity is looked at, ...
@@ -11,7 +11,7 @@ const HALVINGS: usize = 12;
 /// The maximum is found to this part of the range of the quantity in the step.
 const ACCURACY: f64 = 1e-3;
 
-impl<C: RunContact> Run<'_, C> {
+impl<C: Contact> Run<'_, C> {
     /// The time \[s\] of the maximum of a quantity within the last step, and the maximum; pass the negative for the
     /// minimum. Adaptive steps are as long as approach or force at their *ends* allow: the greatest pull of a
     /// pull-off, the peak of a pressure mostly lie within one.

@@ -2,7 +2,7 @@
 
 use std::sync::Mutex;
 
-use crate::run::driven::FieldFinder;
+use crate::run::control::FieldFinder;
 
 /// Steps end for so many fields at most.
 pub(crate) const MOST_FIELDS: usize = 10_000;

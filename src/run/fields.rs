@@ -3,13 +3,21 @@
 use std::sync::{Mutex, PoisonError};
 
 use crate::error::{Result, count_within, within};
-use crate::run::RunContact;
-use crate::run::driven::{FieldFinder, FieldReport, FieldRequest, Prepared};
+use crate::run::Contact;
+use crate::run::control::{Exact, FieldFinder, FieldReport, FieldRequest, Prepared};
+use crate::run::error_budget::ErrorBudget;
 use crate::run::field::{MOST_FIELDS, RunFields};
 use crate::run::follow::Run;
 use crate::run::progress::Stepping;
 
-impl<'a, C: RunContact> Run<'a, C> {
+impl<'a, C: Contact> Run<'a, C> {
+    /// The errors of the run so far, by their source. That of the mesh of a contact in space is
+    /// [measured](crate::fields::Fields::mesh_error) by this call, in the present state.
+    pub fn error_budget(&self) -> ErrorBudget {
+        let mesh = self.contact.in_space().and_then(|fields| fields.mesh_error().unwrap_or_default());
+        ErrorBudget { field: self.worst_field(), mesh, ..self.control.worst() }
+    }
+
     /// Asks for fields to an accuracy.
     pub(crate) fn ask_for(mut self, finder: Box<dyn FieldFinder<C>>, accuracy: f64) -> Result<Run<'a, C>> {
         let bodies = self.histories.count();
@@ -33,7 +41,7 @@ impl<'a, C: RunContact> Run<'a, C> {
         let is_adaptive = matches!(self.stepping, Stepping::Adaptive { .. });
         let request = FieldRequest { history, accuracy: fields.accuracy, start, until, times: &times, is_adaptive };
         let Prepared { stops, tolerance } = fields.finder.prepare(&self.contact, &request)?;
-        C::tighten(&mut self.control, tolerance);
+        self.control.tighten(tolerance);
         fields.is_prepared = true;
         self.stops.add(stops.into(), self.progress.start)
     }
@@ -45,9 +53,10 @@ impl<'a, C: RunContact> Run<'a, C> {
     }
 
     /// What has the field of a contact of the last step to the accuracy, where it has not itself.
-    pub(super) fn exact_field(&self, contact: &C, after: bool) -> Result<(Option<C::Exact>, Option<FieldReport>)> {
+    pub(super) fn exact_field(&self, contact: &C, after: bool) -> Result<(Option<Exact<C>>, Option<FieldReport>)> {
         let Some(fields) = self.fields.as_ref().filter(|fields| fields.is_prepared) else { return Ok((None, None)) };
-        let (exact, report) = fields.finder.exact_field(contact, self.histories.first(), after)?;
+        let (exact, report) =
+            fields.finder.exact_field(contact, self.histories.first(), after, self.cancelled.as_ref())?;
         if let Some(error) = report.error {
             let mut worst = fields.worst.lock().unwrap_or_else(PoisonError::into_inner);
             *worst = Some(worst.unwrap_or(0.0).max(error));
@@ -56,12 +65,12 @@ impl<'a, C: RunContact> Run<'a, C> {
     }
 
     /// The greatest error of the fields so far.
-    pub(super) fn worst_field(&self) -> Option<f64> {
+    fn worst_field(&self) -> Option<f64> {
         *self.fields.as_ref()?.worst.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// [`Run::exact_field`] at a time within the last step.
-    pub(super) fn exact_within_step(&self, contact: &C, time: f64) -> Result<(Option<C::Exact>, Option<FieldReport>)> {
+    pub(super) fn exact_within_step(&self, contact: &C, time: f64) -> Result<(Option<Exact<C>>, Option<FieldReport>)> {
         self.exact_field(contact, self.last.is_none_or(|(_, last)| time < last.time || last.dt == 0.0))
     }
 }

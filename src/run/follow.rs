@@ -9,12 +9,12 @@ use crate::error::{Error, Result, within};
 use crate::load::{Load, LoadHistory};
 #[cfg(feature = "checkpoint")]
 use crate::run::autosave::Autosave;
-use crate::run::driven::Course;
+use crate::run::control::{Control, Course};
 use crate::run::event::Event;
 use crate::run::field::RunFields;
 use crate::run::histories::{Histories, RunHistory};
 use crate::run::progress::{Progress, RunProgress, Stepping, rounding};
-use crate::run::{OwnedOrBorrowed, RunContact};
+use crate::run::{Contact, OwnedOrBorrowed};
 
 /// Times up to here are the one at which a step has ended.
 fn covered_by(time: f64) -> f64 {
@@ -68,7 +68,7 @@ const COMPUTED: f64 = 1e-12;
 /// ```
 #[derive(Debug)]
 #[must_use = "a run takes no step until next_step is called"]
-pub struct Run<'a, C: RunContact = ViscoelasticContact> {
+pub struct Run<'a, C: Contact = ViscoelasticContact> {
     pub(super) contact: OwnedOrBorrowed<&'a mut C, Box<C>>,
     pub(super) histories: Histories<'a>,
     /// The loads at the end of the next step, or now.
@@ -76,14 +76,14 @@ pub struct Run<'a, C: RunContact = ViscoelasticContact> {
     pub(super) stepping: Stepping,
     pub(super) until: f64,
     pub(super) progress: Progress,
-    pub(super) control: C::Control,
+    pub(super) control: Box<dyn Control<C>>,
     /// Times at which steps end, and at which states within steps are sampled.
     pub(super) stops: Schedule,
     pub(super) sampled: Schedule,
     /// Quantities whose crossings end steps.
     pub(super) events: Vec<Event<C>>,
     /// Set by another thread to end the step under way.
-    cancelled: Option<Arc<AtomicBool>>,
+    pub(super) cancelled: Option<Arc<AtomicBool>>,
     /// Start and report of the last step of this run.
     pub(super) last: Option<(f64, StepReport)>,
     /// Whether the material is known until the end.
@@ -190,7 +190,7 @@ impl<'a> Run<'a> {
     }
 }
 
-impl<'a, C: RunContact> Run<'a, C> {
+impl<'a, C: Contact> Run<'a, C> {
     pub(crate) fn new(
         contact: OwnedOrBorrowed<&'a mut C, Box<C>>,
         history: RunHistory<'a>,
@@ -206,7 +206,7 @@ impl<'a, C: RunContact> Run<'a, C> {
         stepping: Stepping,
         until: f64,
     ) -> Run<'a, C> {
-        let (progress, control) = contact.begin(stepping, until);
+        let (progress, control) = contact.lead(stepping, until);
         let covered = if progress.is_new() { progress.start.next_down() } else { covered_by(progress.now) };
         Run {
             contact,
@@ -342,9 +342,9 @@ impl<'a, C: RunContact> Run<'a, C> {
         self.stepping.validate_run(self.progress.start, self.until)?;
         let Run { contact, histories, loads, until, progress, control, cancelled, known, .. } = self;
         let (now, until) = (contact.time(), *until);
-        let attracts = contact.in_space().is_some_and(|fields| fields.attraction().is_some());
+        let attracts = contact.attracts();
         histories.loads(loads, |history| history.checked_at(now, attracts))?;
-        let jumps = !contact.bears(control, loads);
+        let jumps = !control.bears(contact, loads);
         if !jumps && now >= until {
             return Ok(None);
         }
@@ -371,7 +371,7 @@ impl<'a, C: RunContact> Run<'a, C> {
         };
         let given = given.map(|time| (time, &loads[..]));
         let course = Course { histories, given, until, stop, corner, kink, cancelled: cancelled.as_deref() };
-        contact.advance(control, &course).map(Some)
+        control.advance(contact, &course).map(Some)
     }
 
     /// How far the run has come.
@@ -381,7 +381,7 @@ impl<'a, C: RunContact> Run<'a, C> {
 
     /// Number of steps rejected for their error, with [`Stepping::adaptive`].
     pub fn rejected_steps(&self) -> u64 {
-        C::rejected(&self.control)
+        self.control.rejected()
     }
 
     /// The contact after the last step.
@@ -390,7 +390,7 @@ impl<'a, C: RunContact> Run<'a, C> {
     }
 }
 
-impl<C: RunContact> Run<'static, C> {
+impl<C: Contact> Run<'static, C> {
     /// The contact of a run that owns it ([`ViscoelasticContact::into_follow`]), after the last step.
     pub fn into_contact(self) -> C {
         self.contact.into_owned()

@@ -9,11 +9,8 @@ use crate::contact::step::Attempt;
 use crate::contact::step::error_in_time::{error_in_time, least_sizes};
 use crate::contact::{Computation, State, Step, ViscoelasticContact};
 use crate::error::Result;
-use crate::hereditary::{Interval, StepContext, TimeError};
+use crate::hereditary::{Interval, StepContext, TimeError, WEIGHTS};
 use crate::load::LoadHistory;
-
-/// The part of the difference that counts.
-const SHARE: f64 = 0.5;
 
 /// The step that was divided last.
 #[derive(Debug, Clone)]
@@ -69,7 +66,7 @@ impl Halves {
         if let Some(passes) = contact.computation.attracted.as_mut() {
             passes.report = passes.report.after(of_first_half, of_whole);
         }
-        let difference = SHARE * self.difference(contact, outlook);
+        let difference = WEIGHTS.halves * self.difference(contact, outlook);
         Ok(Divided { attempt, difference, errors: [of_first, of_second] })
     }
 

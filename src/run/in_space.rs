@@ -5,36 +5,59 @@ use std::path::Path;
 
 use crate::contact::{Step, StepReport, ViscoelasticContact};
 use crate::error::Result;
-use crate::fields::KeptFields;
+use crate::fields::Fields;
 use crate::hereditary::{StepContext, TimeError};
 use crate::load::Load;
 use crate::rheology::TemperatureHistory;
-use crate::run::Run;
+use crate::run::Contact;
 use crate::run::adaptive_step::adaptive_step;
-use crate::run::driven::{Course, Driven};
+use crate::run::control::{Control, Course};
 use crate::run::error_budget::ErrorBudget;
 use crate::run::halves::Halves;
 use crate::run::histories::Histories;
 use crate::run::progress::{Progress, Stepping};
 use crate::run::step_control::StepControl;
 
-impl Driven for ViscoelasticContact {
-    type Control = StepControl;
-    type Exact = KeptFields;
-
-    fn begin(&mut self, stepping: Stepping, until: f64) -> (Progress, StepControl) {
-        let saved = self.saved_run.take().and_then(|saved| saved.downcast::<(Progress, StepControl)>().ok());
-        let continues = |(progress, control): &(Progress, StepControl)| {
-            progress.continues(self.time(), stepping, until) && control.tracks.len() == self.fields().bodies()
-        };
-        match saved.filter(|saved| continues(saved)) {
-            Some(saved) => (*saved).clone(),
-            None => (Progress::begin(self.time(), stepping), StepControl::new(stepping, self.fields().bodies())),
-        }
+impl Contact for ViscoelasticContact {
+    fn step_to(&mut self, time: f64, load: Load) -> Result<StepReport> {
+        let dt = time - self.time();
+        ViscoelasticContact::step(self, dt, load)
     }
 
-    fn bears(&self, _: &StepControl, loads: &[Load]) -> bool {
-        self.computation.state.held.loads == loads
+    fn step(&mut self, dt: f64, load: Load) -> Result<StepReport> {
+        ViscoelasticContact::step(self, dt, load)
+    }
+
+    fn time(&self) -> f64 {
+        ViscoelasticContact::time(self)
+    }
+
+    fn force(&self) -> f64 {
+        self.fields().force()
+    }
+
+    fn approach(&self) -> f64 {
+        self.fields().approach()
+    }
+
+    fn tilt(&self) -> [f64; 2] {
+        self.fields().tilt()
+    }
+
+    fn contact_area(&self) -> f64 {
+        self.fields().contact_area()
+    }
+
+    fn is_separated(&self) -> bool {
+        self.fields().is_separated()
+    }
+
+    fn in_space(&self) -> Option<Fields<'_>> {
+        Some(self.fields())
+    }
+
+    fn attracts(&self) -> bool {
+        self.scene.ground.attraction.is_some()
     }
 
     fn temperature(&self) -> Option<&TemperatureHistory> {
@@ -53,45 +76,80 @@ impl Driven for ViscoelasticContact {
         self.scene.limits.check_age(end, reduced - clock.undisturbed_until, true)
     }
 
-    fn advance(&mut self, control: &mut StepControl, course: &Course<'_>) -> Result<StepReport> {
-        let rows = self.computation.state.held.region.rows();
+    fn lead(&mut self, stepping: Stepping, until: f64) -> (Progress, Box<dyn Control<Self>>) {
+        let saved = self.saved_run.take().and_then(|saved| saved.downcast::<(Progress, StepControl)>().ok());
+        let continues = |(progress, control): &(Progress, StepControl)| {
+            progress.continues(self.time(), stepping, until) && control.tracks.len() == self.fields().bodies()
+        };
+        let (progress, control) = match saved.filter(|saved| continues(saved)) {
+            Some(saved) => (*saved).clone(),
+            None => (Progress::begin(self.time(), stepping), StepControl::new(stepping, self.fields().bodies())),
+        };
+        (progress, Box::new(control))
+    }
+}
+
+impl Control<ViscoelasticContact> for StepControl {
+    fn bears(&self, contact: &ViscoelasticContact, loads: &[Load]) -> bool {
+        contact.computation.state.held.loads == loads
+    }
+
+    fn advance(&mut self, contact: &mut ViscoelasticContact, course: &Course<'_>) -> Result<StepReport> {
+        let rows = contact.computation.state.held.region.rows();
         rows.unless_lost(|| {
             let (report, error) = match course.given {
-                Some((time, loads)) => self.given_step(control, course, time, loads)?,
-                None => adaptive_step(self, control, course)?,
+                Some((time, loads)) => contact.given_step(self, course, time, loads)?,
+                None => adaptive_step(contact, self, course)?,
             };
-            control.include(&error, report.residual);
+            self.include(&error, report.residual);
             Ok(report)
         })
     }
 
-    fn within(&self, control: &StepControl, histories: &Histories<'_>, time: f64) -> Result<(Self, StepReport)> {
-        let attracts = self.scene.ground.attraction.is_some();
+    fn within(
+        &self,
+        contact: &ViscoelasticContact,
+        histories: &Histories<'_>,
+        time: f64,
+    ) -> Result<(ViscoelasticContact, StepReport)> {
+        let attracts = contact.attracts();
         let loads = |_: &_| histories.each().map(|history| history.checked_at(time, attracts)).collect();
-        let of_last = |halves: &&Halves| halves.middle == self.computation.state.start.clock.time;
-        let before = control.halves.as_deref().filter(of_last).map(|halves| &halves.start);
-        let (contact, pressed) =
-            self.advanced_within_step(time, control.solver_tolerance(&self.scene), before, loads)?;
-        let report = contact.report(None, pressed);
-        Ok((contact, report))
+        let of_last = |halves: &&Halves| halves.middle == contact.computation.state.start.clock.time;
+        let before = self.halves.as_deref().filter(of_last).map(|halves| &halves.start);
+        let tolerance = self.solver_tolerance(&contact.scene);
+        let (found, pressed) = contact.advanced_within_step(time, tolerance, before, loads)?;
+        let report = found.report(None, pressed);
+        Ok((found, report))
     }
 
-    fn tighten(control: &mut StepControl, tolerance: f64) {
-        control.tolerance = control.tolerance.min(tolerance);
+    fn tighten(&mut self, tolerance: f64) {
+        self.tolerance = self.tolerance.min(tolerance);
     }
 
-    fn rejected(control: &StepControl) -> u64 {
-        control.rejected
+    fn rejected(&self) -> u64 {
+        self.rejected
+    }
+
+    fn worst(&self) -> ErrorBudget {
+        self.worst
+    }
+
+    fn bends(&self) -> Vec<&[f64]> {
+        self.tracks.iter().map(|track| &track.scale.bends[..]).collect()
+    }
+
+    fn boxed(&self) -> Box<dyn Control<ViscoelasticContact>> {
+        Box::new(self.clone())
     }
 
     #[cfg(feature = "checkpoint")]
-    fn save_run(&self, path: &Path, (progress, control): (&Progress, &StepControl)) -> Result<()> {
-        self.save_with(path, Some(&(progress.clone(), control.clone())))
+    fn save_run(&self, contact: &ViscoelasticContact, progress: &Progress, path: &Path) -> Result<()> {
+        contact.save_with(path, Some(&(progress.clone(), self.clone())))
     }
 
     #[cfg(feature = "checkpoint")]
-    fn is_due(&self, due: bool) -> Result<bool> {
-        let rows = self.computation.state.held.region.rows();
+    fn is_due(&self, contact: &ViscoelasticContact, due: bool) -> Result<bool> {
+        let rows = contact.computation.state.held.region.rows();
         rows.unless_lost(|| Ok(rows.any(due)))
     }
 }
@@ -117,14 +175,5 @@ impl ViscoelasticContact {
             self.computation.state.history.reset_differences();
         }
         Ok((report, error))
-    }
-}
-
-impl Run<'_> {
-    /// The errors of the run so far, by their source. That of the mesh is
-    /// [measured](crate::fields::Fields::mesh_error) by this call, in the present state.
-    pub fn error_budget(&self) -> ErrorBudget {
-        let mesh = self.contact.fields().mesh_error().unwrap_or_default();
-        ErrorBudget { field: self.worst_field(), mesh, ..self.control.worst }
     }
 }

@@ -1,9 +1,10 @@
 //! Runs along a load history, of every contact.
 //!
-//! [`Run`] leads a contact in space ([`ViscoelasticContact`](crate::ViscoelasticContact)) or on elastic states
-//! ([`StatesContact`](crate::states::StatesContact)).
+//! [`Run`] leads a contact in space ([`ViscoelasticContact`](crate::ViscoelasticContact)), on elastic states
+//! ([`StatesContact`](crate::states::StatesContact)), or one of your own ([`Contact`]).
 
-// `follow` takes the next step of any contact (`driven`): of given length, or as long as its error allows. In space
+// `follow` takes the next step of any contact by its `control`: of given length, or as long as its error allows. Most
+// contacts take steps twice (`doubled`), judged by what is known of their kind (`plain`, and in states). In space
 // (`in_space`) `step_control` alone owns the length of a step: `adaptive_step` has it proposed, tries it, has it
 // judged by its error, and accepts it or tries again. The error depends on the loads within the step (`track`, one
 // for each body) and on what lies ahead and behind (`outlook`): the greatest loads and displacements of the run
@@ -12,7 +13,8 @@
 mod adaptive_step;
 #[cfg(feature = "checkpoint")]
 mod autosave;
-pub(crate) mod driven;
+pub(crate) mod control;
+pub(crate) mod doubled;
 mod error_budget;
 mod event;
 mod events;
@@ -23,34 +25,249 @@ mod follow;
 mod halves;
 pub(crate) mod histories;
 mod in_space;
+pub(crate) mod judge;
 mod outlook;
+pub(crate) mod passage;
 mod past_steps;
+mod plain;
 pub(crate) mod progress;
 mod rises;
+pub(crate) mod rounded;
 mod run_scale;
 mod samples;
 #[cfg(feature = "checkpoint")]
 mod saving;
 mod step_control;
-mod tops;
+pub(crate) mod trace;
 mod track;
 
 pub use crate::ascending::Times;
-pub use driven::FieldReport;
+pub use control::FieldReport;
 pub use error_budget::ErrorBudget;
 pub use event::{Crossing, Event};
 pub use follow::Run;
-pub(crate) use progress::SAME_TIME;
 pub use progress::{RunProgress, Stepping};
 pub use samples::Sample;
 
+use std::fmt::Debug;
 use std::ops::{Deref, DerefMut};
 
-/// A contact that a [`Run`] leads: [`ViscoelasticContact`](crate::ViscoelasticContact) or
-/// [`StatesContact`](crate::states::StatesContact). What a run asks of it is private.
-pub trait RunContact: driven::Driven {}
+use crate::contact::{Estimated, Figures, StepReport, Warnings};
+use crate::error::Result;
+use crate::fields::Fields;
+use crate::load::{Load, LoadHistory};
+use crate::rheology::TemperatureHistory;
+use control::Control;
+use doubled::Doubled;
+use plain::Plain;
+use progress::Progress;
 
-impl<C: driven::Driven> RunContact for C {}
+/// A contact that is advanced in time: in space ([`ViscoelasticContact`](crate::ViscoelasticContact)), on elastic
+/// states ([`StatesContact`](crate::states::StatesContact)), or one of your own. Tables, charts and equations of
+/// motion take any of them, and a [`Run`] leads any of them along a load history, in given steps or adaptive ones,
+/// with samples, events and cancelling.
+///
+/// ```
+/// use viscocontact::prelude::*;
+///
+/// /// Work that a motion to a depth and back takes.
+/// fn loss(mut contact: impl Contact, depth: f64) -> viscocontact::Result<f64> {
+///     let (mut work, mut before) = (0.0, [0.0; 2]);
+///     for step in 1..=40 {
+///         let approach = depth * (1.0 - f64::from(step - 20).abs() / 20.0);
+///         let force = contact.step(0.05, Load::approach(approach))?.force;
+///         work += 0.5 * (force + before[1]) * (approach - before[0]);
+///         before = [approach, force];
+///     }
+///     Ok(work)
+/// }
+///
+/// let (ball, body) = (10.0e-3, Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?));
+/// let states = StatesContact::new(&ElasticStates::sphere(ball)?, &body)?;
+/// let cells = ViscoelasticContact::builder(Grid::square(64, 4.0e-3)?).geometry(&Sphere::new(ball)?).material(body).build()?;
+/// assert!((loss(cells, 2.0e-4)? / loss(states, 2.0e-4)? - 1.0).abs() < 1e-2);
+/// # Ok::<(), Error>(())
+/// ```
+///
+/// # A contact of your own
+/// Five methods are required. Adaptive steps of a run are then taken whole and in two halves, of which the halves are
+/// kept; how far both are apart tells the error ([`Contact::difference`]). A spring beside a dashpot, stepped
+/// implicitly:
+///
+/// ```
+/// use viscocontact::prelude::*;
+///
+/// #[derive(Debug, Clone)]
+/// struct SpringAndDashpot {
+///     stiffness: f64,
+///     damping: f64,
+///     time: f64,
+///     approach: f64,
+///     force: f64,
+/// }
+///
+/// impl Contact for SpringAndDashpot {
+///     fn step_to(&mut self, time: f64, load: Load) -> viscocontact::Result<viscocontact::contact::StepReport> {
+///         let dt = time - self.time;
+///         match load {
+///             // a jump of the force moves nothing
+///             Load::Force { normal, .. } => {
+///                 self.approach = (self.damping * self.approach + dt * normal) / (self.damping + dt * self.stiffness);
+///                 self.force = normal;
+///             }
+///             Load::Approach { approach, .. } => {
+///                 let rate = if dt > 0.0 { (approach - self.approach) / dt } else { 0.0 };
+///                 (self.force, self.approach) = (self.stiffness * approach + self.damping * rate, approach);
+///             }
+///             _ => return Err(UserError::new("the contact", "it has no springs in series").into()),
+///         }
+///         self.time = time;
+///         Ok(self.report(dt, load))
+///     }
+///
+///     fn time(&self) -> f64 { self.time }
+///     fn force(&self) -> f64 { self.force }
+///     fn approach(&self) -> f64 { self.approach }
+///     fn contact_area(&self) -> f64 { if self.force > 0.0 { 1.0e-6 } else { 0.0 } }
+/// }
+///
+/// # use viscocontact::UserError;
+/// let mut contact = SpringAndDashpot { stiffness: 2.0e3, damping: 1.0e3, time: 0.0, approach: 0.0, force: 0.0 };
+/// let load = StepLoad::new(Load::force(1.0))?;
+/// let mut run = contact
+///     .follow(&load, Stepping::adaptive(1.0e-3), 2.0)
+///     .sample_at([0.5])?
+///     .stop_when(|contact| contact.approach(), Crossing::Up(2.0e-4))?;
+/// while run.next_step()?.is_some() {
+///     for sample in run.samples() {
+///         let contact = sample?.contact().clone();
+///         let exact = 0.5e-3 * (1.0 - (-2.0 * contact.time()).exp());
+///         assert!((contact.approach() - exact).abs() < 2.0e-3 * 0.5e-3);
+///     }
+/// }
+/// assert!((run.events()[0].times()[0] - 0.5 * (5.0_f64 / 3.0).ln()).abs() < 1e-3);
+/// # Ok::<(), Error>(())
+/// ```
+pub trait Contact: Clone + Debug + Send + Sync + 'static {
+    /// Advances to a `time` \[s\] under a load; to its own time for a jump. It ends exactly at this time. What it is
+    /// after an error does not matter to runs, which go back to the state before.
+    ///
+    /// # Errors
+    /// Of a contact of your own any [`Error`](crate::Error), a [`UserError`](crate::UserError) among them; else those
+    /// of the `step` of the type.
+    fn step_to(&mut self, time: f64, load: Load) -> Result<StepReport>;
+
+    /// Time \[s\].
+    fn time(&self) -> f64;
+
+    /// Normal force \[N\].
+    fn force(&self) -> f64;
+
+    /// Approach of the origin \[m\].
+    fn approach(&self) -> f64;
+
+    /// Contact area \[m²\].
+    fn contact_area(&self) -> f64;
+
+    /// Advances by `dt` \[s\] to a load; `dt` = 0 is a jump.
+    ///
+    /// # Errors
+    /// As [`Contact::step_to`].
+    fn step(&mut self, dt: f64, load: Load) -> Result<StepReport> {
+        self.step_to(self.time() + dt, load)
+    }
+
+    /// Tilt along x1 and x2 \[rad\].
+    fn tilt(&self) -> [f64; 2] {
+        [0.0; 2]
+    }
+
+    /// Whether the bodies are apart. [`StepReport::contact_cells`] does not tell: on states without cells it is
+    /// always 0.
+    fn is_separated(&self) -> bool {
+        self.contact_area() == 0.0
+    }
+
+    /// Force over contact area \[Pa\]; 0 without contact.
+    fn mean_pressure(&self) -> f64 {
+        let area = self.contact_area();
+        if area > 0.0 { self.force() / area } else { 0.0 }
+    }
+
+    /// The fields of a contact in space; `None` for one without, as on elastic states, which takes work to find them.
+    fn in_space(&self) -> Option<Fields<'_>> {
+        None
+    }
+
+    /// Whether forces may pull: whether surfaces attract each other.
+    fn attracts(&self) -> bool {
+        self.in_space().is_some_and(|fields| fields.attraction().is_some())
+    }
+
+    /// How far this outcome of a step is from another one of the same step, in approach \[m\] and force \[N\].
+    /// Adaptive steps of a contact of your own keep it below the tolerance of the run, relative to what approach and
+    /// force are, or to a tenth of the maximum so far. Add what differences of inner states may add to them later:
+    /// a surface that recovers while bodies are apart shows in neither before they meet again.
+    fn difference(&self, other: &Self) -> [f64; 2] {
+        [self.approach() - other.approach(), self.force() - other.force()].map(f64::abs)
+    }
+
+    /// The report of a step of length `dt` to this state, without work: what [`Contact::step_to`] of a contact of
+    /// your own returns.
+    fn report(&self, dt: f64, load: Load) -> StepReport {
+        StepReport {
+            time: self.time(),
+            force: self.force(),
+            approach: self.approach(),
+            contact_cells: self.in_space().map_or(0, |fields| fields.contact_cells()),
+            tilt: self.tilt(),
+            dt,
+            time_error: (dt == 0.0).then_some(0.0),
+            estimated: Estimated::under(&[load]),
+            warnings: Warnings::default(),
+            figures: Figures::default(),
+            iterations: 0,
+            fallback_iterations: 0,
+            convolutions: 0,
+            preconditioner_applications: 0,
+            residual: 0.0,
+        }
+    }
+
+    /// Follows a load history to the time `until` \[s\], in steps chosen by `stepping`.
+    fn follow<'a>(&'a mut self, history: &'a dyn LoadHistory, stepping: Stepping, until: f64) -> Run<'a, Self> {
+        Run::new(OwnedOrBorrowed::Borrowed(self), OwnedOrBorrowed::Borrowed(history), stepping, until)
+    }
+
+    /// Like [`Contact::follow`], for a run that owns the contact and its history, as
+    /// [`ViscoelasticContact::into_follow`](crate::ViscoelasticContact::into_follow).
+    fn into_follow(self, history: impl LoadHistory + 'static, stepping: Stepping, until: f64) -> Run<'static, Self> {
+        Run::new(OwnedOrBorrowed::Owned(Box::new(self)), OwnedOrBorrowed::Owned(Box::new(history)), stepping, until)
+    }
+
+    #[doc(hidden)]
+    fn temperature(&self) -> Option<&TemperatureHistory> {
+        None
+    }
+
+    /// The approach at which the upright bodies touch \[m\], if they never have.
+    #[doc(hidden)]
+    fn untouched(&self) -> Option<f64> {
+        None
+    }
+
+    /// Fails if the material of bodies that touch is not known until the end of a run.
+    #[doc(hidden)]
+    fn is_known_until(&self, _end: f64) -> Result<()> {
+        Ok(())
+    }
+
+    /// Progress and control of a run that begins here, or that continues from this saved contact.
+    #[doc(hidden)]
+    fn lead(&mut self, stepping: Stepping, until: f64) -> (Progress, Box<dyn Control<Self>>) {
+        (Progress::begin(self.time(), stepping), Box::new(Doubled::<Self, Plain>::new(self, stepping, until)))
+    }
+}
 
 /// A value that a run borrows as `B` or owns as `O`.
 #[derive(Debug)]

@@ -1,14 +1,13 @@
 //! What the error of a step depends on, besides the step, and the tolerance of its solver.
 
-use crate::contact::step::error_in_time::SHORTEST_TOUCH;
 use crate::contact::{Computation, Scene, State, Step};
 use crate::equilibrium::DEFAULT_TOLERANCE;
 use crate::equilibrium::pressed::Pressed;
 use crate::error::Result;
 use crate::extent::Extent;
-use crate::hereditary::{Interval, Meeting, StepContext};
+use crate::hereditary::{Interval, Meeting, StepContext, WEIGHTS};
 use crate::load::Load;
-use crate::run::driven::Course;
+use crate::run::control::Course;
 use crate::run::step_control::StepControl;
 use crate::run::track::is_held;
 use crate::solver::Freedom;
@@ -22,15 +21,6 @@ const SHARE_OF_PASSES: f64 = 0.03;
 const SOLVER_ON_MEETING: f64 = 3.0;
 /// The solver attains this tolerance in all scenes.
 const LEAST_TOLERANCE: f64 = 1e-10;
-/// A corner of the temperature is one of the second derivative of u. The steps before do not show it: the estimate of
-/// the first step after it, which the next step does not put right, is too low by this factor times the ratio of the
-/// step before to this one.
-const AT_TURN: f64 = 5.0;
-/// An error of u before a switch to a given approach counts at most so many times: the force by which stiffer glass
-/// answers is over before the first step ends.
-const MOST_ON_SWITCH: f64 = 3e3;
-/// Events shorter than this fraction of the time between corners, times the tolerance, are not resolved.
-const SHORTEST: f64 = 0.03;
 
 impl StepControl {
     /// Tolerance of the solver that suits the tolerance in time, where no prescribed approach is to come. A tolerance
@@ -64,9 +54,9 @@ impl StepControl {
         let age = reduced - clock.undisturbed_until;
         let end = scene.reduced_time(clock, kink.min(*until))?;
         let span = end - self.since;
-        let resolution = SHORTEST * self.tolerance * span;
-        let on_switch = self.on_switch(scene, step.interval, age, SHORTEST_TOUCH * resolution)?;
-        let soon = 1.0 / scene.material.contact_compliance(SHORTEST_TOUCH * resolution);
+        let resolution = WEIGHTS.shortest * self.tolerance * span;
+        let on_switch = self.on_switch(scene, step.interval, age, resolution)?;
+        let soon = 1.0 / scene.material.contact_compliance(resolution);
         let meetings = bodies().map(|(track, load)| track.scale.coming_back(scene, load, age, time));
         let meeting = meetings.reduce(Meeting::worst).unwrap_or(Meeting::NONE);
         let expected = bodies().map(|(track, load)| track.scale.expected(scene, load, age));
@@ -81,11 +71,10 @@ impl StepControl {
             on_jump: jumps
                 .fold(0.0, |most, (load, history)| stiffness_on_jump(scene, load, &history.at(time)).max(most)),
             is_last: time == kink && !histories.each().all(|history| is_held(history, clock.time, time)),
-            tolerance: self.tolerance,
             agreement: self.past.agreement(),
             steps: self.past.count() + 1.0,
             resolution,
-            beginning: SHORTEST * self.tolerance * span.min(self.past.shortest_time()),
+            beginning: WEIGHTS.shortest * self.tolerance * span.min(self.past.shortest_time()),
             length_is_given: false,
         })
     }
@@ -103,7 +92,7 @@ impl StepControl {
         let compliance = |t: f64| scene.material.contact_compliance(t);
         let glassy = if compliance(0.0) > 0.0 { compliance(0.0) } else { compliance(touch) };
         let responses = [dt, age].map(|length| (compliance(left + length) - compliance(left)) / glassy);
-        Ok(responses.map(|response| response * (MOST_ON_SWITCH / responses[1]).min(1.0)))
+        Ok(responses.map(|response| response * (WEIGHTS.most_on_switch / responses[1]).min(1.0)))
     }
 }
 
@@ -129,7 +118,7 @@ pub(super) fn excess(scene: &Scene, tried: &Computation, dt: f64) -> f64 {
     let clock = &tried.state.clock;
     let corner = scene.temperature.as_ref().and_then(|history| history.next_corner(clock.time.next_down()));
     let is_turn = clock.last_dt > 0.0 && corner == Some(clock.time);
-    let of_turn = if is_turn { AT_TURN * (clock.last_dt / dt).max(1.0) } else { 1.0 };
+    let of_turn = if is_turn { WEIGHTS.at_turn * (clock.last_dt / dt).max(1.0) } else { 1.0 };
     let tilts = tried.trial.free.iter().any(Freedom::tilts);
     let Pressed { cells, reach, .. } = if tilts { tried.pressed(scene) } else { Pressed::default() };
     let leave = cells < tried.state.held.current.contact_cells;

@@ -4,10 +4,11 @@ use crate::contact::{Scene, State};
 use crate::equilibrium::window::placement::resting_depth;
 use crate::error::{Error, Result, within};
 use crate::hereditary::Meeting;
-use crate::load::{Load, LoadHistory};
+use crate::load::{Load, LoadHistory, Tilt};
 use crate::quadrature::bisect;
+use crate::run::passage::{Passage, Span};
 use crate::run::rises::{Rise, rises};
-use crate::run::tops::{approach, first_top_of_step, tops_of_run};
+use crate::run::trace::{bends, looks};
 
 /// Errors of smaller loads and displacements are relative to this fraction of the greatest of the run.
 const SMALL: f64 = 0.05;
@@ -46,8 +47,8 @@ pub(super) struct RunScale {
     width: f64,
     /// Estimated final depth under the greatest force, divided by the final compliance.
     depth_over_compliance: f64,
-    /// Times of the tops of the load, between its corners, ascending.
-    tops: Vec<f64>,
+    /// Times at which the load bends, ascending.
+    pub(super) bends: Vec<f64>,
     /// Rises of the history, ascending in time.
     rises: Vec<Rise>,
     /// Times at which a given approach or a spring follows a given force, ascending.
@@ -77,8 +78,15 @@ impl RunScale {
         let decades = (1..=TIMES_PER_DECADE * DECADES)
             .map(|k| now + span * 10f64.powf(-f64::from(k) / f64::from(TIMES_PER_DECADE)));
         let corners: Vec<f64> = history.breakpoints(now).take_while(|&next| next <= until).take(BREAKPOINTS).collect();
-        scale.tops = tops_of_run(history, [now, until], &corners, scene.ground.attraction.is_some())?;
-        let mut times: Vec<f64> = equal.chain(corners).chain(scale.tops.iter().copied()).collect();
+        let (mut seen, mut passage) = (Vec::new(), Passage::default());
+        for look in looks(history, [now, until], scene.ground.attraction.is_some()) {
+            let (time, [before, at]) = look?;
+            let both = [before, at].into_iter().skip(usize::from(before == at));
+            seen.extend(both.map(|load| (time, load.main())));
+        }
+        scale.bends = bends(&seen);
+        passage.show(&seen);
+        let mut times: Vec<f64> = equal.chain(corners).chain(passage.turns().map(|turn| turn.0)).collect();
         times.sort_by(f64::total_cmp);
         scale.rises = rises(scene, history, touch, &times)?;
         let mut times: Vec<f64> = times.into_iter().chain(decades).collect();
@@ -129,7 +137,7 @@ impl RunScale {
     pub(super) fn fits(&self) -> bool {
         let sizes = [self.force, self.depth, self.stress, self.width, self.depth_over_compliance];
         !self.touch.is_nan()
-            && self.tops.is_sorted()
+            && self.bends.is_sorted()
             && self.rises.iter().all(Rise::fits)
             && sizes.iter().all(|&size| size >= 0.0)
     }
@@ -244,35 +252,41 @@ impl RunScale {
         rises.map(meeting).fold(Meeting::NONE, Meeting::worst)
     }
 
-    /// The tops of the load between `now` and `time`.
-    pub(super) fn tops_within(&self, now: f64, time: f64) -> impl Iterator<Item = f64> {
-        let first = self.tops.partition_point(|&top| top <= now);
-        self.tops[first..].iter().copied().take_while(move |&top| top < time)
+    /// The first top of a prescribed approach, or of the far end of a spring, in a step at which an upright body is
+    /// below the undeformed surface. Wherever the surface is by then, a body that is still above it there was so ever
+    /// since the start of the step: surfaces that nothing presses recover, and rise.
+    pub(super) fn first_top(&self, history: &dyn LoadHistory, passage: &Passage) -> Option<f64> {
+        let is_below = |top: f64| approach(&history.at(top)).is_some_and(|approach| approach > self.touch);
+        passage.turns().find(|&(time, is_top)| is_top && is_below(time)).map(|turn| turn.0)
     }
 
-    /// The first top of a prescribed approach, or of the far end of a spring, between `now` and `time` at which an
-    /// upright body is below the undeformed surface. Wherever the surface is by then, a body that is still above it
-    /// there was so ever since `now`: surfaces that nothing presses recover, and rise.
-    pub(super) fn first_top(&self, history: &dyn LoadHistory, now: f64, time: f64) -> Option<f64> {
-        let is_below = |&top: &f64| approach(&history.at(top)).is_some_and(|approach| approach > self.touch);
-        let seen = first_top_of_step(history, [now, time], is_below);
-        self.tops_within(now, time).find(is_below).into_iter().chain(seen).reduce(f64::min)
-    }
-
-    /// The time between `now` and `stop` at which a prescribed approach or a spring first brings undisturbed bodies
-    /// into contact. The displacement grows from this time on, as after a corner. Infinite if there is none.
-    pub(super) fn first_touch(&self, history: &dyn LoadHistory, now: f64, stop: f64) -> f64 {
+    /// The time in a step at which a prescribed approach or a spring first brings undisturbed bodies into contact. The
+    /// displacement grows from this time on, as after a corner. Infinite if there is none.
+    pub(super) fn first_touch(&self, history: &dyn LoadHistory, passage: &Passage) -> f64 {
         let apart = |time: f64| match history.at(time) {
             Load::Approach { approach: depth, .. } | Load::Spring { drive: depth, .. } => depth < self.touch,
             Load::Force { .. } => true,
         };
-        if matches!(history.at(now), Load::Force { .. }) || !apart(now) || !stop.is_finite() {
+        let Span { now, end } = passage.span();
+        if matches!(history.at(now), Load::Force { .. }) || !apart(now) {
             return f64::INFINITY;
         }
-        let parts = (1..=EQUAL_PARTS).map(|k| now + (stop - now) * f64::from(k) / f64::from(EQUAL_PARTS));
-        let mut times: Vec<f64> = parts.chain(self.tops_within(now, stop)).collect();
-        times.sort_by(f64::total_cmp);
-        let Some(k) = times.iter().position(|&time| !apart(time)) else { return f64::INFINITY };
-        bisect(if k == 0 { now } else { times[k - 1] }, times[k], 64, apart)[1]
+        let mut last = now;
+        for time in passage.inside().map(|point| point.0).chain([end]) {
+            if !apart(time) {
+                return bisect(last, time, 64, apart)[1];
+            }
+            last = time;
+        }
+        f64::INFINITY
+    }
+}
+
+/// The prescribed approach of an upright body, or of the far end of its spring: of a body that is apart, where it is.
+pub(super) fn approach(load: &Load) -> Option<f64> {
+    match *load {
+        Load::Approach { approach: at, tilt: [Tilt::Fixed(0.0), Tilt::Fixed(0.0)] }
+        | Load::Spring { drive: at, tilt: [Tilt::Fixed(0.0), Tilt::Fixed(0.0)], .. } => Some(at),
+        _ => None,
     }
 }

@@ -5,34 +5,39 @@ use std::borrow::Cow;
 use crate::contact::{StepReport, ViscoelasticContact};
 use crate::error::Result;
 use crate::fields::{Fields, KeptFields};
-use crate::run::FieldReport;
-use crate::run::RunContact;
+use crate::run::Contact;
+use crate::run::control::{Exact, FieldReport};
 use crate::run::follow::Run;
 use crate::run::progress::rounding;
 
 /// A state of a run between the ends of a step, or at its end, from [`Run::samples`].
 #[derive(Debug)]
-pub struct Sample<'a, C: RunContact = ViscoelasticContact> {
+pub struct Sample<'a, C: Contact = ViscoelasticContact> {
     contact: Cow<'a, C>,
     report: StepReport,
     at_end: bool,
     is_asked_for: bool,
-    exact: Option<C::Exact>,
+    exact: Option<Exact<C>>,
     field: Option<FieldReport>,
 }
 
 impl Sample<'_> {
     /// The fields at this time: to the accuracy that was asked for ([`Run::fields_to`]), else those of the contact.
     pub fn fields(&self) -> Fields<'_> {
-        self.exact.as_ref().map_or_else(|| self.contact.fields(), KeptFields::fields)
+        self.in_space().unwrap_or_else(|| self.contact.fields())
     }
 }
 
-impl<C: RunContact> Sample<'_, C> {
+impl<C: Contact> Sample<'_, C> {
     /// The contact at this time. In space its pressure is that of the steps: [`Sample::fields`] may have a more
     /// accurate one. On elastic states it is one of steps as fine as the fields need that were asked for.
     pub fn contact(&self) -> &C {
-        self.exact.as_ref().and_then(C::instead).unwrap_or(&self.contact)
+        if let Some(Exact::Contact(contact)) = &self.exact { contact } else { &self.contact }
+    }
+
+    /// The fields at this time of a contact in space, as [`Sample::fields`]; `None` of others.
+    pub fn in_space(&self) -> Option<Fields<'_>> {
+        if let Some(Exact::Fields(fields)) = &self.exact { Some(fields.fields()) } else { self.contact().in_space() }
     }
 
     /// The report of the step from the start of the run's step to this time, with the work that the sample took; its
@@ -57,7 +62,7 @@ impl<C: RunContact> Sample<'_, C> {
     }
 }
 
-impl<C: RunContact> Run<'_, C> {
+impl<C: Contact> Run<'_, C> {
     /// The states of the last step, in the order of time: at each time to sample within it ([`Run::sample_at`]), and
     /// at its end; of the first step of a run that does not begin with a jump of its load at its start, too. Times
     /// that agree but for rounding are one. Each is as exact as the end of the step ([`Run::within_step`]). So a run
@@ -152,11 +157,11 @@ impl<C: RunContact> Run<'_, C> {
     pub fn within_step(&self, time: f64) -> Result<C> {
         let contact = self.sample_within_step(time)?.0;
         let (exact, _) = self.exact_within_step(&contact, time)?;
-        Ok(exact.as_ref().and_then(C::instead).cloned().unwrap_or(contact))
+        Ok(if let Some(Exact::Contact(exact)) = exact { *exact } else { contact })
     }
 
     pub(super) fn sample_within_step(&self, time: f64) -> Result<(C, StepReport)> {
-        self.contact.within(&self.control, &self.histories, time)
+        self.control.within(&self.contact, &self.histories, time)
     }
 }
 
@@ -169,6 +174,6 @@ impl Run<'_> {
     pub fn fields_within_step(&self, time: f64) -> Result<KeptFields> {
         let contact = self.sample_within_step(time)?.0;
         let (exact, _) = self.exact_within_step(&contact, time)?;
-        Ok(exact.unwrap_or_else(|| contact.fields().keep()))
+        Ok(if let Some(Exact::Fields(fields)) = exact { *fields } else { contact.fields().keep() })
     }
 }

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use crate::contact::checkpoint::SavedRun;
 use crate::contact::{StepReport, ViscoelasticContact};
 use crate::error::Result;
-use crate::run::RunContact;
+use crate::run::Contact;
 use crate::run::autosave::Autosave;
 use crate::run::follow::Run;
 use crate::run::progress::Progress;
@@ -88,7 +88,7 @@ impl ViscoelasticContact {
     }
 }
 
-impl<C: RunContact> Run<'_, C> {
+impl<C: Contact> Run<'_, C> {
     /// Saves the run to `path` whenever `every` has passed, after the step under way then, and at its end. An
     /// interruption loses no more than that. A contact that is built alike resumes from the file
     /// ([`ViscoelasticContact::resume`]): the next run of the same stepping takes the same steps, bitwise. Where
@@ -129,7 +129,7 @@ impl<C: RunContact> Run<'_, C> {
     /// If the file cannot be written.
     pub fn save(&mut self, path: impl AsRef<Path>) -> Result<()> {
         self.progress.now = self.contact.time();
-        self.contact.save_run(path.as_ref(), (&self.progress, &self.control))
+        self.control.save_run(&self.contact, &self.progress, path.as_ref())
     }
 
     /// Takes the next step, and saves the run if that is due or the run is over.
@@ -140,8 +140,10 @@ impl<C: RunContact> Run<'_, C> {
         };
         let Some(autosave) = &self.autosave else { return Ok(report) };
         let (due, path) = (report.is_none() || autosave.last.elapsed() >= autosave.every, autosave.path.clone());
-        let saved =
-            self.contact.is_due(due).and_then(|due| if due { self.save(path).map(|()| true) } else { Ok(false) });
+        let saved = self
+            .control
+            .is_due(&self.contact, due)
+            .and_then(|due| if due { self.save(path).map(|()| true) } else { Ok(false) });
         if let Some(autosave) = &mut self.autosave {
             match saved {
                 Ok(true) => autosave.last = Instant::now(),

@@ -7,6 +7,7 @@ use crate::load::Load;
 use crate::run::error_budget::ErrorBudget;
 use crate::run::halves::Halves;
 use crate::run::histories::Histories;
+use crate::run::passage::Span;
 use crate::run::past_steps::PastSteps;
 use crate::run::progress::Stepping;
 use crate::run::run_scale::RunScale;
@@ -147,7 +148,7 @@ impl StepControl {
 
     /// The next step to try, towards `stop`, shorter than the one `tried` before. An error if no step is short enough.
     pub(super) fn propose(
-        &self,
+        &mut self,
         scene: &Scene,
         state: &State,
         histories: &Histories<'_>,
@@ -184,7 +185,7 @@ impl StepControl {
 
     /// The length of the first step after a jump or a corner: the longest over which the creep is linear to within the
     /// tolerance. After a corner, only the departure of the load from its previous slope makes the bodies creep.
-    fn first(&self, scene: &Scene, state: &State, histories: &Histories<'_>, left: f64) -> Result<f64> {
+    fn first(&mut self, scene: &Scene, state: &State, histories: &Histories<'_>, left: f64) -> Result<f64> {
         let (clock, now, jumped) = (&state.clock, state.clock.time, state.clock.last_dt == 0.0);
         // the approach of a paraboloid is proportional to force and compliance to the power 2/3
         let compliance = |t: f64| scene.material.contact_compliance(t).powf(2.0 / 3.0);
@@ -209,10 +210,11 @@ impl StepControl {
                 let own = 0.125 * (creep - glassy) / creep * change / scale.max(f64::MIN_POSITIVE);
                 deviation = deviation.max(own.abs());
             }
-            if deviation.abs() <= self.tolerance
-                && self.straying(scene, state, histories, now + dt, |_| true)? <= self.tolerance
-            {
-                return Ok(dt);
+            if deviation.abs() <= self.tolerance {
+                self.look(histories, Span { now, end: now + dt })?;
+                if self.straying(scene, state, histories, |_| true)? <= self.tolerance {
+                    return Ok(dt);
+                }
             }
         }
         Ok(longest * 10f64.powi(-DECADES))
@@ -244,39 +246,43 @@ impl StepControl {
         self.rejected += 1;
     }
 
-    /// Greatest deviation of the loads in a step to `time` from what the step takes them for, of the bodies that count
+    /// Looks at the loads within a step.
+    pub(super) fn look(&mut self, histories: &Histories<'_>, span: Span) -> Result<()> {
+        self.tracks.iter_mut().zip(histories.each()).try_for_each(|(track, history)| track.look(history, span))
+    }
+
+    /// Maximum deviation of the loads in the step from what the step takes them for, of the bodies that count
     /// ([`Track::straying`]).
     pub(super) fn straying(
         &self,
         scene: &Scene,
         state: &State,
         histories: &Histories<'_>,
-        time: f64,
         counts: impl Fn(&Track) -> bool,
     ) -> Result<f64> {
         let mut bodies = self.tracks.iter().zip(histories.each()).filter(|(track, _)| counts(track));
         bodies.try_fold(0.0_f64, |most, (track, history)| {
-            Ok(most.max(track.straying(scene, state, history, time, self.tolerance)?))
+            Ok(most.max(track.straying(scene, state, history, self.tolerance)?))
         })
     }
 
-    /// The first time between `now` and `stop` at which undisturbed bodies touch, as [`RunScale::first_touch`].
-    pub(super) fn first_touch(&self, histories: &Histories<'_>, now: f64, stop: f64) -> f64 {
+    /// The first time before `stop` at which undisturbed bodies touch, as [`RunScale::first_touch`].
+    pub(super) fn first_touch(&mut self, histories: &Histories<'_>, span: Span) -> Result<f64> {
+        if !span.end.is_finite() {
+            return Ok(f64::INFINITY);
+        }
+        self.look(histories, span)?;
         let bodies = self.tracks.iter().zip(histories.each());
-        bodies.fold(f64::INFINITY, |first, (track, history)| first.min(track.scale.first_touch(history, now, stop)))
+        Ok(bodies
+            .map(|(track, history)| track.scale.first_touch(history, &track.passage))
+            .fold(f64::INFINITY, f64::min))
     }
 
-    /// The first top between `now` and `time`, as [`RunScale::first_top`], of the bodies that count.
-    pub(super) fn first_top(
-        &self,
-        histories: &Histories<'_>,
-        now: f64,
-        time: f64,
-        counts: impl Fn(usize, &Track) -> bool,
-    ) -> Option<f64> {
+    /// The first top within the step, as [`RunScale::first_top`], of the bodies that count.
+    pub(super) fn first_top(&self, histories: &Histories<'_>, counts: impl Fn(usize, &Track) -> bool) -> Option<f64> {
         let bodies = self.tracks.iter().zip(histories.each()).enumerate();
         let tops = bodies.filter(|(body, (track, _))| counts(*body, track));
-        tops.filter_map(|(_, (track, history))| track.scale.first_top(history, now, time)).reduce(f64::min)
+        tops.filter_map(|(_, (track, history))| track.scale.first_top(history, &track.passage)).reduce(f64::min)
     }
 
     /// Records an accepted step of length `dt` to `loads` at `time`, as it was proposed.

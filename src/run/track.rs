@@ -3,15 +3,11 @@
 use crate::contact::{Computation, Scene, State};
 use crate::error::{Error, Result};
 use crate::load::{Load, LoadHistory};
-use crate::run::run_scale::RunScale;
-use crate::run::tops::approach;
+use crate::run::passage::{Passage, Span};
+use crate::run::run_scale::{RunScale, approach};
 
 /// Nodes of the quadratic and its correction, besides the end of the step.
 const NODES: usize = 3;
-/// Positions within a step at which the load is evaluated. They are uneven, so that no oscillation is zero at all of
-/// them.
-const SHARES: [f64; 5] = [0.153, 0.381, 0.5, 0.677, 0.891];
-
 /// What a run knows of the loads of a body.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
@@ -22,6 +18,9 @@ pub(super) struct Track {
     pub(super) corner: Option<(f64, f64)>,
     /// Greatest loads and displacements of the run.
     pub(super) scale: RunScale,
+    /// The load within the step under way.
+    #[cfg_attr(feature = "checkpoint", serde(skip))]
+    pub(super) passage: Passage,
     /// Whether the body is apart at the start of the step, ...
     pub(super) is_apart: bool,
     /// ... and driven, upright, in the step under way.
@@ -31,7 +30,8 @@ pub(super) struct Track {
 impl Track {
     pub(super) fn new() -> Track {
         let nodes = Vec::with_capacity(NODES + 1);
-        Track { nodes, corner: None, scale: RunScale::default(), is_apart: false, is_driven: false }
+        let (scale, passage) = (RunScale::default(), Passage::default());
+        Track { nodes, corner: None, scale, passage, is_apart: false, is_driven: false }
     }
 
     /// Whether a run can continue with these values; a damaged file may hold any.
@@ -75,23 +75,26 @@ impl Track {
         self.is_apart && self.is_driven
     }
 
-    /// Sees the load at both ends of a step.
-    pub(super) fn look(&mut self, ends: [&Load; 2]) {
-        self.is_driven = ends.iter().all(|load| approach(load).is_some());
+    /// Looks at the load within a step.
+    pub(super) fn look(&mut self, history: &dyn LoadHistory, span: Span) -> Result<()> {
+        let Track { scale, passage, .. } = self;
+        let (start, attracts) = (history.checked_at(span.now, scale.attracts)?, scale.attracts);
+        let end = history.checked_before(span.end, attracts)?;
+        self.is_driven = [start, end].iter().all(|load| approach(load).is_some());
+        passage.look(span, start.main(), &scale.bends, |time| Ok(history.checked_before(time, attracts)?.main()))
     }
 
-    /// Greatest deviation of the load in a step to `time` from the polynomial through its last nodes and the load at
-    /// `time`, relative to the load or to a fraction of the greatest load of the run: at uneven positions, and at its
-    /// tops. Rejects invalid loads of the history. Beyond the `tolerance` it is not followed further.
+    /// Maximum deviation of the load in the step that was looked at from the polynomial through its last nodes and the
+    /// load at its end, relative to the load or to a fraction of the maximum load of the run. Beyond the `tolerance` it
+    /// is not followed further.
     pub(super) fn straying(
         &self,
         scene: &Scene,
         state: &State,
         history: &dyn LoadHistory,
-        time: f64,
         tolerance: f64,
     ) -> Result<f64> {
-        let (clock, now, attracts) = (&state.clock, state.clock.time, self.scale.attracts);
+        let (clock, time, attracts) = (&state.clock, self.passage.span().end, self.scale.attracts);
         let end = history.checked_before(time, attracts)?;
         let mut nodes = [(scene.reduced_time(clock, time)?, end); NODES + 1];
         let known = self.nodes.len().min(NODES);
@@ -99,11 +102,10 @@ impl Track {
         let nodes = &nodes[..=known];
         let start = nodes[known.min(1)].1;
         let scale = self.scale.of_load(&start, &end);
-        let tops = self.scale.tops_within(now, time);
         let mut most = 0.0_f64;
-        for (k, between) in SHARES.map(|share| now + share * (time - now)).into_iter().chain(tops).enumerate() {
-            // a step that is too long already need not be looked at where the load has its tops
-            if k >= SHARES.len() && most > tolerance {
+        for (between, _) in self.passage.inside() {
+            // a step that is too long already need not be looked at further
+            if most > tolerance {
                 break;
             }
             let load = history.checked_at(between, attracts)?;

@@ -300,10 +300,6 @@ impl StatesContact {
         self.prescribed = prescribed;
     }
 
-    pub(crate) fn reset_differences(&mut self) {
-        self.levels.reset_differences();
-    }
-
     /// Depth of the load point \[m\].
     pub(crate) fn depth(&self) -> f64 {
         self.levels.motions.depth

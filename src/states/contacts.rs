@@ -1,6 +1,9 @@
 //! Elastic contacts at a few levels, from which the pressure of a creeping one is superposed: as many as its error asks
 //! for, which is measured.
 
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
 use crate::elastic::ElasticContact;
 use crate::error::Result;
 use crate::load::{Load, Tilt};
@@ -25,6 +28,8 @@ pub(super) struct Contacts {
     kept: Vec<Solved>,
     /// Elastic contacts solved since the last field, and their convolutions.
     pub(super) spent: [usize; 2],
+    /// Set by another thread to end the contact under way.
+    pub(super) cancelled: Option<Arc<AtomicBool>>,
 }
 
 /// An elastic contact at a level.
@@ -51,14 +56,19 @@ pub(super) struct Superposition {
 
 impl Contacts {
     pub(super) fn new(elastic: ElasticContact, tilt: [Tilt; 2], tolerance: f64) -> Contacts {
-        Contacts { elastic, tilt, allowed_fall: allowed_fall(tolerance), kept: Vec::new(), spent: [0; 2] }
+        let (allowed_fall, kept) = (allowed_fall(tolerance), Vec::new());
+        Contacts { elastic, tilt, allowed_fall, kept, spent: [0; 2], cancelled: None }
     }
 
     pub(super) fn solve(&mut self, level: f64) -> Result<Solved> {
         if let Some(kept) = self.kept.iter().find(|kept| kept.level == level) {
             return Ok(kept.clone());
         }
-        let report = self.elastic.solve(Load::Force { normal: level, tilt: self.tilt })?;
+        let load = Load::Force { normal: level, tilt: self.tilt };
+        let report = match &self.cancelled {
+            Some(flag) => self.elastic.solve_unless(flag, load)?,
+            None => self.elastic.solve(load)?,
+        };
         self.spent = [self.spent[0] + 1, self.spent[1] + report.convolutions];
         let fields = self.elastic.fields();
         let (motion, area) = (fields.motion(0), fields.contact_area());

@@ -38,7 +38,6 @@
 //! # Ok::<(), viscocontact::Error>(())
 //! ```
 
-mod as_contact;
 mod beside;
 mod closed_forms;
 mod contact;
@@ -49,17 +48,16 @@ mod elastic;
 mod fields;
 mod levels;
 mod outside;
-mod passage;
 mod pressed;
 mod profile;
 mod reach;
 mod refined;
 mod repeated;
-mod rounded;
 mod run;
 mod run_fields;
 #[cfg(feature = "checkpoint")]
 mod saved;
+mod solved_curve;
 mod sweep;
 
 pub use crate::error::StatesError;

@@ -7,12 +7,11 @@ use crate::error::{Result, positive};
 use crate::hereditary::Interpolant;
 use crate::load::{Load, LoadHistory, Tilt};
 use crate::rheology::{Material, TemperatureHistory};
-use crate::run::Stepping;
+use crate::run::trace::looks;
+use crate::run::{Contact, Stepping};
 use crate::states::contact::StatesContact;
 use crate::states::curve::ElasticStates;
 
-/// Number of even parts of a run at whose ends the load is sampled.
-const PARTS: u32 = 4096;
 /// Number of even parts of a run at whose ends its level is sampled, and the tolerance of its steps.
 const LEVELS: u32 = 1024;
 const TOLERANCE: f64 = 1e-4;
@@ -92,11 +91,9 @@ pub(crate) struct Loading<'a> {
 impl Loading<'_> {
     fn reach(&self) -> Result<Reach> {
         positive("end of the run", self.until)?;
-        let all = sampled(self.history, [0.0, self.until], PARTS)?;
+        let all = sampled(self.history, [0.0, self.until])?;
         if all.iter().all(Load::is_force) {
-            return Ok(Reach::Level(
-                MARGIN * self.greatest_level(all[0].tilt(), Interpolant::CorrectedLinear, LEVELS)?,
-            ));
+            return Ok(Reach::Level(MARGIN * self.greatest_level(all[0].tilt(), Interpolant::CorrectedLinear)?));
         }
         Ok(Reach::Loads(greatest(&all, self.softest_compliance()?).collect()))
     }
@@ -105,24 +102,29 @@ impl Loading<'_> {
         softest_compliance(&[self.material], self.temperature, self.until)
     }
 
-    /// An undisturbed contact on these states.
-    pub(crate) fn contact(&self, states: &Arc<ElasticStates>, interpolant: Interpolant) -> Result<StatesContact> {
-        let contact = StatesContact::new(states, self.material)?.with_interpolant(interpolant);
-        Ok(match self.temperature {
-            Some(temperature) => contact.with_temperature(temperature.clone()),
-            None => contact,
-        })
+    /// An undisturbed contact on these states at the start of a run.
+    pub(crate) fn undisturbed(
+        &self,
+        states: &Arc<ElasticStates>,
+        interpolant: Interpolant,
+        start: f64,
+    ) -> Result<StatesContact> {
+        let mut contact = StatesContact::new(states, self.material)?.with_interpolant(interpolant);
+        if let Some(temperature) = self.temperature {
+            contact = contact.with_temperature(temperature.clone());
+        }
+        if start > 0.0 {
+            contact.step_to(start, start, Load::Force { normal: 0.0, tilt: states.tilt })?;
+        }
+        Ok(contact)
     }
 
-    /// The greatest level at the ends of the steps and of so many even parts of a run under given forces; it does not
-    /// depend on the shape.
-    pub(crate) fn greatest_level(&self, tilt: [Tilt; 2], interpolant: Interpolant, parts: u32) -> Result<f64> {
-        let mut states = ElasticStates::sphere(1.0)?;
-        Arc::make_mut(&mut states).tilt = tilt;
-        let mut contact = self.contact(&states, interpolant)?;
-        let run = contact.follow(self.history, Stepping::adaptive(TOLERANCE), self.until);
-        let mut run = run.sample_at(Times::every(self.until / f64::from(parts)))?;
+    /// The greatest level at the ends of the steps and at even parts of a run under given forces.
+    fn greatest_level(&self, tilt: [Tilt; 2], interpolant: Interpolant) -> Result<f64> {
+        let mut contact = self.undisturbed(&states_of(tilt)?, interpolant, 0.0)?;
         let mut greatest = 0.0_f64;
+        let run = contact.follow(self.history, Stepping::adaptive(TOLERANCE), self.until);
+        let mut run = run.sample_at(Times::every(self.until / f64::from(LEVELS)))?;
         while run.next_step()?.is_some() {
             for sample in run.samples() {
                 greatest = greatest.max(sample?.contact().level());
@@ -132,15 +134,18 @@ impl Loading<'_> {
     }
 }
 
-/// Loads at the ends of so many even parts of the time from a start to an end, and at the corners and jumps within.
-pub(crate) fn sampled(history: &dyn LoadHistory, [start, until]: [f64; 2], parts: u32) -> Result<Vec<Load>> {
+/// Some states under loads of this tilt: levels under given forces do not depend on the shape.
+pub(super) fn states_of(tilt: [Tilt; 2]) -> Result<Arc<ElasticStates>> {
+    let mut states = ElasticStates::sphere(1.0)?;
+    Arc::make_mut(&mut states).tilt = tilt;
+    Ok(states)
+}
+
+/// The loads of a run.
+pub(crate) fn sampled(history: &dyn LoadHistory, ends: [f64; 2]) -> Result<Vec<Load>> {
     let mut all = Vec::new();
-    for k in 0..=parts {
-        let time = start + (until - start) * f64::from(k) / f64::from(parts);
-        all.push(history.checked_at(time, false)?);
-    }
-    for corner in history.breakpoints(start).take_while(|&next| next <= until) {
-        all.extend([history.checked_before(corner, false)?, history.checked_at(corner, false)?]);
+    for look in looks(history, ends, false) {
+        all.extend(look?.1);
     }
     Ok(all)
 }

@@ -1,6 +1,7 @@
 //! Fields where levels do not give them: a run beside in steps twice as long tells the error of a field, and where it
 //! is more than was asked, the steps so far are halved until the field changes by less.
 
+use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, PoisonError};
 
 use crate::contact::ViscoelasticContact;
@@ -82,7 +83,7 @@ impl Refined {
         if !(is_second || jumps || is_corner || self.in_halves || self.times.contains(&end)) {
             return;
         }
-        if take(contact, step, self.interpolant).is_err() {
+        if take(contact, step, self.interpolant, None).is_err() {
             self.coarse = None;
         }
     }
@@ -101,6 +102,7 @@ impl Refined {
         &self,
         run: &ViscoelasticContact,
         history: &dyn LoadHistory,
+        cancelled: Option<&AtomicBool>,
     ) -> Result<(Option<KeptFields>, Option<f64>)> {
         let coarse = self.coarse.as_ref().filter(|coarse| coarse.time() == run.time());
         let mut error = coarse.and_then(|coarse| self.error(run, coarse));
@@ -114,8 +116,9 @@ impl Refined {
                 finer.push(Finer { contact: self.origin.clone(), followed: 0, failed: false });
             }
             let own = &mut finer[k];
-            let advanced = if own.failed { Ok(()) } else { self.advance(own, 2 << k, history) };
-            own.failed |= advanced.is_err();
+            let advanced = if own.failed { Ok(()) } else { self.advance(own, 2 << k, history, cancelled) };
+            // a step that was cancelled is taken when the field is asked for again
+            own.failed |= advanced.as_ref().is_err_and(|error| !matches!(error, Error::Cancelled { .. }));
             match advanced {
                 Err(error) if !matches!(error, Error::Step(_)) => return Err(error),
                 // the fields of longer steps stay
@@ -130,15 +133,24 @@ impl Refined {
     }
 
     /// Follows the run to its last step, in so many parts of each step.
-    fn advance(&self, finer: &mut Finer, parts: u32, history: &dyn LoadHistory) -> Result<()> {
+    fn advance(
+        &self,
+        finer: &mut Finer,
+        parts: u32,
+        history: &dyn LoadHistory,
+        cancelled: Option<&AtomicBool>,
+    ) -> Result<()> {
         let parts = if self.in_halves { 2 * parts } else { parts };
         while let Some(step @ Step { start, end, .. }) = self.taken.get(finer.followed).copied() {
-            for k in (1..parts).filter(|_| end > start) {
-                let time = start + (end - start) * f64::from(k) / f64::from(parts);
-                let load = history.checked_before(time, true)?;
-                take(&mut finer.contact, Step { start, end: time, load, is_corner: false }, self.interpolant)?;
+            let inner = (1..parts).map(|k| start + (end - start) * f64::from(k) / f64::from(parts));
+            for time in inner {
+                // parts that were taken before the flag was set
+                if time > finer.contact.time() {
+                    let part = Step { start, end: time, load: history.checked_before(time, true)?, is_corner: false };
+                    take(&mut finer.contact, part, self.interpolant, cancelled)?;
+                }
             }
-            take(&mut finer.contact, step, self.interpolant)?;
+            take(&mut finer.contact, step, self.interpolant, cancelled)?;
             finer.followed += 1;
         }
         Ok(())
@@ -146,11 +158,16 @@ impl Refined {
 }
 
 /// A step of a contact to the end of one of the run.
-fn take(contact: &mut ViscoelasticContact, step: Step, interpolant: Interpolant) -> Result<()> {
+fn take(
+    contact: &mut ViscoelasticContact,
+    step: Step,
+    interpolant: Interpolant,
+    cancelled: Option<&AtomicBool>,
+) -> Result<()> {
     let Step { end, load, is_corner, .. } = step;
     let loads = [load];
     let mut request = contact.request(end, end - contact.time(), &loads, contact.settings().tolerance)?;
-    request.interval.interpolant = interpolant;
+    (request.interval.interpolant, request.cancelled) = (interpolant, cancelled);
     contact.take_expecting(request, &StepContext::default())?;
     if is_corner {
         contact.computation.state.history.reset_differences();

@@ -3,13 +3,11 @@
 use std::sync::Arc;
 
 use crate::error::{Error, Result, StepError};
-use crate::hereditary::Interpolant;
-use crate::load::{Load, LoadHistory};
-use crate::run::Stepping;
+use crate::load::LoadHistory;
+use crate::run::{Contact, Stepping};
 use crate::states::contact::StatesContact;
 use crate::states::curve::ElasticStates;
 use crate::states::profile::Profile;
-use crate::states::reach::Loading;
 
 /// Tolerance of the steps that show how long steps of a run may be, and the parts of each at first.
 const COARSE: f64 = 1e-3;
@@ -36,9 +34,9 @@ pub(crate) struct Repeated {
     origin: StatesContact,
     pub(super) accuracy: f64,
     /// Ends of steps that resolve the load, and what the bodies do under it.
-    schedule: Vec<f64>,
+    schedule: Arc<[f64]>,
     /// Times, and the maximum force until then: times far on leave out steps near the start.
-    forces: Vec<(f64, f64)>,
+    forces: Arc<[(f64, f64)]>,
     /// The part by which steps before a time are shorter than the one before.
     shortening: f64,
     /// Whether all loads are forces.
@@ -54,18 +52,12 @@ pub(crate) struct Found {
 }
 
 impl Repeated {
-    /// Before the run is known.
-    pub(super) fn unknown(origin: StatesContact, accuracy: f64) -> Repeated {
-        let (schedule, forces, shortening) = (Vec::new(), Vec::new(), accuracy.sqrt());
-        Repeated { origin, accuracy, schedule, forces, shortening, by_force: true }
-    }
-
-    /// A run from `origin`; and its greatest level.
+    /// A run from `origin`, under forces alone or not; and its greatest level.
     pub(crate) fn new(
         origin: StatesContact,
         history: &dyn LoadHistory,
         until: f64,
-        accuracy: f64,
+        (by_force, accuracy): (bool, f64),
     ) -> Result<(Repeated, f64)> {
         let (mut contact, mut ends, mut greatest) = (origin.clone(), vec![origin.time()], 0.0_f64);
         let (mut force, mut forces) = (0.0_f64, Vec::new());
@@ -80,18 +72,13 @@ impl Repeated {
         let part = |pair: &[f64], k: u32| pair[0] + (pair[1] - pair[0]) * f64::from(k) / f64::from(FIRST_PARTS);
         let within = |pair: &[f64]| (1..FIRST_PARTS).map(|k| part(pair, k)).chain([pair[1]]).collect::<Vec<_>>();
         let schedule = ends.windows(2).filter(|pair| pair[1] > pair[0]).flat_map(within).collect();
-        let mut by_force = true;
-        for end in &ends {
-            by_force &= history.checked_at(*end, false)?.is_force();
-        }
-        Ok((Repeated { origin, accuracy, schedule, forces, shortening: accuracy.sqrt(), by_force }, greatest))
+        let (forces, shortening) = (forces.into(), accuracy.sqrt());
+        Ok((Repeated { origin, accuracy, schedule, forces, shortening, by_force }, greatest))
     }
 
     /// The run on other elastic states of the same surface.
     pub(super) fn on(&self, states: Arc<ElasticStates>) -> Repeated {
-        let mut repeated = self.clone();
-        repeated.origin.states = states;
-        repeated
+        Repeated { origin: StatesContact { states, ..self.origin.clone() }, ..self.clone() }
     }
 
     /// The contact at a time, in steps that are halved until they leave so little of the pressure, and what they leave.
@@ -121,7 +108,7 @@ impl Repeated {
         }
         let start = self.origin.time();
         let starts = std::iter::once(start).chain(self.schedule.iter().copied());
-        let halves = starts.zip(&self.schedule).flat_map(|(start, end)| [0.5 * (start + end), *end]);
+        let halves = starts.zip(&*self.schedule).flat_map(|(start, end)| [0.5 * (start + end), *end]);
         self.schedule = halves.collect();
         self.shortening *= 0.5;
         true
@@ -129,7 +116,7 @@ impl Repeated {
 
     /// Ends of its steps to a time.
     fn ends(&self, time: f64) -> Vec<f64> {
-        let (mut ends, mut left) = (self.schedule.clone(), 1.0);
+        let (mut ends, mut left) = (self.schedule.to_vec(), 1.0);
         while left > LAST_STEP {
             left *= 1.0 - self.shortening;
             ends.push(time - (time - self.origin.time()) * left);
@@ -185,7 +172,7 @@ impl Repeated {
                 force = force.max(contact.force());
             }
             while let Some(next) = corner.filter(|corner| *corner <= end) {
-                contact.reset_differences();
+                contact.levels.reset_differences();
                 corner = history.next_breakpoint(next);
             }
         }
@@ -220,18 +207,4 @@ impl Found {
         // where nothing has pressed yet, one of them may have touched
         Ok(if off == 0.0 { 0.0 } else { off / size })
     }
-}
-
-/// An undisturbed contact on these states at the start of a run.
-pub(super) fn undisturbed(
-    course: &Loading<'_>,
-    states: &Arc<ElasticStates>,
-    interpolant: Interpolant,
-    start: f64,
-) -> Result<StatesContact> {
-    let mut contact = course.contact(states, interpolant)?;
-    if start > 0.0 {
-        contact.step_to(start, start, Load::Force { normal: 0.0, tilt: states.tilt })?;
-    }
-    Ok(contact)
 }

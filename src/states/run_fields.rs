@@ -1,18 +1,18 @@
 //! Fields of runs to an accuracy.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::contact::{Scene, ViscoelasticContact};
 use crate::equilibrium::Ground;
 use crate::error::{Result, count_within};
-use crate::fields::KeptFields;
-use crate::load::LoadHistory;
+use crate::load::{Load, LoadHistory};
 use crate::run::Run;
-use crate::run::driven::{FieldFinder, FieldReport, FieldRequest, Prepared};
+use crate::run::control::{Exact, FieldFinder, FieldReport, FieldRequest, Prepared};
 use crate::run::field::MOST_FIELDS;
 use crate::states::beside::Beside;
 use crate::states::contact::StatesContact;
-use crate::states::reach::Loading;
+use crate::states::reach::{Loading, sampled};
 use crate::states::refined::Refined;
 use crate::states::repeated::Repeated;
 use crate::states::unless_refused;
@@ -138,25 +138,27 @@ impl FieldFinder<ViscoelasticContact> for InSpace {
         contact: &ViscoelasticContact,
         history: &dyn LoadHistory,
         after: bool,
-    ) -> Result<(Option<KeptFields>, FieldReport)> {
+        cancelled: Option<&Arc<AtomicBool>>,
+    ) -> Result<(Option<Exact<ViscoelasticContact>>, FieldReport)> {
         let mut report = FieldReport::default();
         let beside = match self {
             InSpace::Unknown => return Ok((None, report)),
             InSpace::Refined(refined) => {
-                let (fields, error) = refined.fields(contact, history)?;
+                let (fields, error) = refined.fields(contact, history, cancelled.map(|flag| &**flag))?;
                 report.error = error;
-                return Ok((fields, report));
+                return Ok((fields.map(|fields| Exact::Fields(Box::new(fields))), report));
             }
             InSpace::Beside(beside) => beside,
         };
         let mut beside = beside.lock().unwrap_or_else(PoisonError::into_inner);
+        beside.curve.contacts.cancelled = cancelled.cloned();
         let Some(found) = unless_refused(beside.pressure(history, contact.time(), after).map(Some))? else {
             return Ok((None, report));
         };
         [report.elastic_contacts, report.convolutions] = found.spent;
         let exact = contact.fields().keep().with_pressure(&found.pressure);
         report.error = Some(found.error).filter(|error| exact.is_some() && error.is_finite());
-        Ok((exact, report))
+        Ok((exact.map(|fields| Exact::Fields(Box::new(fields))), report))
     }
 }
 
@@ -167,7 +169,9 @@ struct OnStates(Option<Mutex<Repeated>>);
 impl FieldFinder<StatesContact> for OnStates {
     fn prepare(&mut self, contact: &StatesContact, request: &FieldRequest<'_>) -> Result<Prepared> {
         let FieldRequest { history, accuracy, until, .. } = *request;
-        self.0 = Some(Mutex::new(Repeated::new(contact.clone(), history, until, accuracy)?.0));
+        let by_force = sampled(history, [contact.time(), until])?.iter().all(Load::is_force);
+        let (repeated, _) = Repeated::new(contact.clone(), history, until, (by_force, accuracy))?;
+        self.0 = Some(Mutex::new(repeated));
         Ok(Prepared { stops: Vec::new(), tolerance: f64::INFINITY })
     }
 
@@ -176,13 +180,14 @@ impl FieldFinder<StatesContact> for OnStates {
         contact: &StatesContact,
         history: &dyn LoadHistory,
         after: bool,
-    ) -> Result<(Option<StatesContact>, FieldReport)> {
+        _: Option<&Arc<AtomicBool>>,
+    ) -> Result<(Option<Exact<StatesContact>>, FieldReport)> {
         let Some(run) = &self.0 else { return Ok((None, FieldReport::default())) };
         let mut run = run.lock().unwrap_or_else(PoisonError::into_inner);
         let accuracy = run.accuracy;
         let (found, error) = run.in_short_steps(history, (contact.time(), after), accuracy)?;
         Ok((
-            Some(found.contact),
+            Some(Exact::Contact(Box::new(found.contact))),
             FieldReport { error: Some(error).filter(|error| error.is_finite()), ..FieldReport::default() },
         ))
     }

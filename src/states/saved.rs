@@ -11,9 +11,10 @@ use crate::contact::checkpoint::scene::{of_rule, of_text};
 use crate::contact::checkpoint::{check_clocks, malformed};
 use crate::error::{CheckpointError, Error, Result};
 use crate::file::replace;
+use crate::run::judge::Record;
 use crate::run::progress::Progress;
 use crate::states::contact::StatesContact;
-use crate::states::control::Record;
+use crate::states::control::OnLevels;
 use crate::states::curve::ElasticStates;
 use crate::states::levels::Levels;
 
@@ -29,7 +30,7 @@ struct Saved<'a> {
 }
 
 /// A run that continues from the state.
-pub(super) type SavedRun = (Progress, Record);
+pub(super) type SavedRun = (Progress, Record<OnLevels>);
 
 impl StatesContact {
     /// Saves the whole state to a file, from which a contact of the same states, material and time rule continues
@@ -84,7 +85,8 @@ impl StatesContact {
         {
             return malformed("levels that no contact has");
         }
-        if saved.run.as_ref().is_some_and(|(progress, record)| !progress.fits() || !record.fits()) {
+        if saved.run.as_ref().is_some_and(|(progress, record)| !progress.fits() || !record.fits() || !record.own.fits())
+        {
             return malformed("a run that no contact can continue");
         }
         check_clocks(time, reduced, self.scene.temperature.as_ref())?;

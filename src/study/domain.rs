@@ -10,10 +10,8 @@ use crate::load::Load;
 use crate::states::{as_elastic, greatest, sampled};
 use crate::study::scene::Scene;
 
-/// Number of even parts of the run at whose ends the loads are looked at, and every so many of these that give a
-/// contact.
-const PARTS: u32 = 64;
-const THINNED: usize = 8;
+/// Number of loads of a run whose tilt or load point changes that give a contact.
+const OF_TURNING: usize = 16;
 /// Cells along a side of the contacts that find the domain.
 const CELLS: usize = 24;
 /// Greatest number of domains tried, each at most ten times as large or as small as the last.
@@ -154,13 +152,13 @@ fn grid_of(sides: [Side; 2], lengths: [f64; 2]) -> Result<Grid> {
 /// large as ever.
 fn greatest_loads(scene: &Scene<'_>, compliance: f64) -> Result<Vec<Vec<Load>>> {
     let all: Vec<Vec<Load>> =
-        scene.histories.iter().map(|history| sampled(*history, [0.0, scene.until], PARTS)).collect::<Result<_>>()?;
+        scene.histories.iter().map(|history| sampled(*history, [0.0, scene.until])).collect::<Result<_>>()?;
     let mut loads: Vec<Vec<Load>> = all.iter().map(|all| greatest(all, compliance).collect()).collect();
     // where the tilt or the load point changes, the contact is somewhere else
     for (all, loads) in
         all.iter().zip(&mut loads).filter(|(all, _)| all.iter().any(|load| load.tilt() != all[0].tilt()))
     {
-        loads.extend(all.iter().step_by(THINNED).map(|load| as_elastic(*load, compliance)));
+        loads.extend(all.iter().step_by(all.len().div_ceil(OF_TURNING)).map(|load| as_elastic(*load, compliance)));
     }
     let most = loads.iter().map(Vec::len).max().unwrap_or_default();
     Ok((0..most).map(|k| loads.iter().map(|own| own[k.min(own.len() - 1)]).collect()).collect())

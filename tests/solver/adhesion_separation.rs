@@ -4,7 +4,6 @@ use super::adhesion_population::law;
 use crate::common::sticky::{ball, elastic};
 use crate::common::{Draws, from_environment};
 use viscocontact::adhesion::{AdhesionError, ExponentialAttraction};
-use viscocontact::contact::Contact;
 use viscocontact::prelude::*;
 
 /// Whether the bodies are apart, from the fields and the law.

@@ -1,5 +1,8 @@
 //! Pressures to an accuracy: of runs in space at any time, and of contacts on elastic states.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use viscocontact::analytic::{GrowingSphere, Hertz};
 use viscocontact::contact::Edge;
 use viscocontact::geometry::Sum;
@@ -401,6 +404,38 @@ fn fields_without_states_are_found_by_graded_steps() {
         for (some, what) in all.iter().zip(["tilts that turn", "load points that move", "attraction", "loads aside"]) {
             some.print(&format!("accuracy {accuracy:.0e}, {what}"));
             assert!(some.over.above(2.0) == 0 && 10 * some.low() <= some.told.count().max(10));
+        }
+    }
+}
+
+/// A flag that is set while a field is looked for ends the search, beside elastic contacts and by finer steps; the field is found when it is asked
+/// for again.
+#[test]
+fn a_flag_ends_the_search_for_a_field() {
+    let load = Ramp::new(Load::approach(0.0), Load::approach(20.0e-6), 1.0).unwrap();
+    let turning = Turning { load: &load, most: 0.02, rate: 0.4, turned: 0.0, is_free: false };
+    let loads: [&dyn LoadHistory; 2] = [&load, &turning];
+    for load in loads {
+        let fields = |cancels: bool| {
+            let (mut contact, flag) = (ball(), Arc::new(AtomicBool::new(false)));
+            let run = contact.follow(load, Stepping::adaptive(0.1), 1.0).sample_at([0.7, 1.0]).unwrap();
+            let mut run = run.fields_to(1e-3).unwrap().cancelled_by(Arc::clone(&flag));
+            let (mut found, mut cancelled) = (Vec::new(), 0);
+            while run.next_step().unwrap().is_some() {
+                flag.store(cancels, Ordering::Relaxed);
+                cancelled += run.samples().filter(|sample| matches!(sample, Err(Error::Cancelled { .. }))).count();
+                flag.store(false, Ordering::Relaxed);
+                let asked = run.samples().map(Result::unwrap).filter(|sample| sample.is_asked_for());
+                found.extend(asked.map(|sample| sample.fields().pressure().to_vec()));
+            }
+            (found, cancelled)
+        };
+        let ((plain, none), (again, cancelled)) = (fields(false), fields(true));
+        assert!(plain.len() == 2 && again.len() == 2 && none == 0 && cancelled > 0, "{none} {cancelled}");
+        for (one, other) in plain.iter().zip(&again) {
+            // to the accuracy of both: contacts on the curve stay there
+            let off: f64 = one.iter().zip(other).map(|(one, other)| (one - other).abs()).sum();
+            assert!(off <= 2e-3 * one.iter().sum::<f64>(), "{off}");
         }
     }
 }

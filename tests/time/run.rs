@@ -13,7 +13,7 @@ use viscocontact::motion::{FnPath, Path, Straight, Travel};
 use viscocontact::output::Format;
 use viscocontact::prelude::*;
 use viscocontact::rheology::TimeTemperature;
-use viscocontact::run::RunContact;
+
 use viscocontact::{Error, UserError};
 
 use crate::common::refused::refused;
@@ -28,7 +28,7 @@ fn on_states() -> StatesContact {
 }
 
 /// A kind of contact: a new one, and its runs.
-struct Kind<C: RunContact + 'static> {
+struct Kind<C: Contact + 'static> {
     new: fn() -> C,
     follow: fn(C, Box<dyn LoadHistory>, Stepping, f64) -> Run<'static, C>,
     resume: fn(&mut C, &std::path::Path) -> viscocontact::Result<()>,
@@ -36,7 +36,7 @@ struct Kind<C: RunContact + 'static> {
     touch: f64,
 }
 
-impl<C: RunContact + Send> Kind<C> {
+impl<C: Contact + Send> Kind<C> {
     fn run(&self, load: impl LoadHistory + 'static, stepping: Stepping, until: f64) -> Run<'static, C> {
         (self.follow)((self.new)(), Box::new(load), stepping, until)
     }
@@ -49,7 +49,7 @@ fn hold(force: f64) -> StepLoad {
 }
 
 /// Ends, forces and approaches of all steps.
-fn steps<C: RunContact>(mut run: Run<'static, C>) -> Vec<[f64; 3]> {
+fn steps<C: Contact>(mut run: Run<'static, C>) -> Vec<[f64; 3]> {
     let mut steps = Vec::new();
     while let Some(report) = run.next_step().unwrap() {
         steps.push([report.time, report.force, report.approach]);
@@ -62,7 +62,7 @@ macro_rules! behaviours {
     ($($name:ident: $kind:ident, $generic:ident => $check:block)*) => {$(
         #[test]
         fn $name() {
-            fn check<$generic: RunContact + Send>($kind: &Kind<$generic>) $check
+            fn check<$generic: Contact + Send>($kind: &Kind<$generic>) $check
             let grid = Grid::square(24, 4.0e-3).unwrap();
             let touch = Sphere::new(RADIUS).unwrap().initial_gap(0.5 * grid.spacing()[0], 0.5 * grid.spacing()[1]);
             check(&Kind {

@@ -62,9 +62,6 @@ fn first_touch(tried: &Computation, gap: &[f64]) -> f64 {
     tried.state.held.region.rows().least(surface.fold(f64::INFINITY, f64::min))
 }
 
-/// A body that comes back to a surface, however slowly, meets it with the modulus of this time, in times that matter.
-pub(crate) const SHORTEST_TOUCH: f64 = 10.0;
-
 /// Displacements, and v, below this part of the greatest are measured relative to that part.
 const SMALL: [f64; 2] = [0.05, 0.2];
 

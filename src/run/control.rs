@@ -1,16 +1,19 @@
-//! What a run asks of its contact.
+//! What leads a contact along a run.
 
 use std::fmt::Debug;
 #[cfg(feature = "checkpoint")]
 use std::path::Path;
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use crate::contact::{Contact, StepReport};
+use crate::contact::StepReport;
 use crate::error::Result;
+use crate::fields::KeptFields;
 use crate::load::{Load, LoadHistory};
-use crate::rheology::TemperatureHistory;
+use crate::run::error_budget::ErrorBudget;
 use crate::run::histories::Histories;
-use crate::run::progress::{Progress, Stepping};
+#[cfg(feature = "checkpoint")]
+use crate::run::progress::Progress;
 
 /// What a run prescribes of its next step.
 #[derive(Debug, Clone, Copy)]
@@ -53,7 +56,7 @@ pub struct Prepared {
 }
 
 /// Finds fields to an accuracy.
-pub trait FieldFinder<C: Driven>: Debug + Send + Sync {
+pub trait FieldFinder<C>: Debug + Send + Sync {
     /// Looks at the run before its first step.
     fn prepare(&mut self, contact: &C, request: &FieldRequest<'_>) -> Result<Prepared>;
 
@@ -61,13 +64,23 @@ pub trait FieldFinder<C: Driven>: Debug + Send + Sync {
     fn follow(&mut self, _: &C, _: &dyn LoadHistory, _start: f64) {}
 
     /// What has the field of a contact of the last step to the accuracy, where the contact has not; before a jump of
-    /// the load at its time, or after it.
+    /// the load at its time, or after it. Ends where another thread sets `cancelled`.
     fn exact_field(
         &self,
         contact: &C,
         history: &dyn LoadHistory,
         after: bool,
-    ) -> Result<(Option<C::Exact>, FieldReport)>;
+        cancelled: Option<&Arc<AtomicBool>>,
+    ) -> Result<(Option<Exact<C>>, FieldReport)>;
+}
+
+/// What has a field to an accuracy.
+#[derive(Debug, Clone)]
+pub enum Exact<C> {
+    /// The fields themselves.
+    Fields(Box<KeptFields>),
+    /// A contact to show in the place of the run's own.
+    Contact(Box<C>),
 }
 
 /// How exact the pressure of a [`Sample`](crate::run::Sample) is, and what it took.
@@ -84,52 +97,47 @@ pub struct FieldReport {
     pub convolutions: usize,
 }
 
-/// A contact that runs drive. It is public for bounds only: this module is private.
-pub trait Driven: Contact + Debug {
-    /// The control of the steps, and what the run has found so far.
-    type Control: Debug + Clone;
-    /// What has fields to an accuracy.
-    type Exact: Debug + Clone;
-
-    /// The contact to show in the place of the run's own.
-    fn instead(_: &Self::Exact) -> Option<&Self> {
-        None
-    }
-
-    /// Progress and control of a run that begins here, or that continues from this saved contact.
-    fn begin(&mut self, stepping: Stepping, until: f64) -> (Progress, Self::Control);
-
+/// The control of the steps of a contact, with what the run has found so far. It is public for bounds only: this
+/// module is private.
+pub trait Control<C>: Debug + Send + Sync {
     /// Whether these loads act; false if it is not known.
-    fn bears(&self, control: &Self::Control, loads: &[Load]) -> bool;
-
-    fn temperature(&self) -> Option<&TemperatureHistory>;
-
-    /// The approach at which the upright bodies touch \[m\], if they never have.
-    fn untouched(&self) -> Option<f64>;
-
-    /// Fails if the material of bodies that touch is not known until the end of a run.
-    fn is_known_until(&self, end: f64) -> Result<()>;
+    fn bears(&self, contact: &C, loads: &[Load]) -> bool;
 
     /// Takes the next step. Differences of steps start anew where it ends at a corner.
-    fn advance(&mut self, control: &mut Self::Control, course: &Course<'_>) -> Result<StepReport>;
+    fn advance(&mut self, contact: &mut C, course: &Course<'_>) -> Result<StepReport>;
 
     /// The contact at a time within the last step, under the loads of the histories, and the report of the step to
     /// that time.
-    fn within(&self, control: &Self::Control, histories: &Histories<'_>, time: f64) -> Result<(Self, StepReport)>;
+    fn within(&self, contact: &C, histories: &Histories<'_>, time: f64) -> Result<(C, StepReport)>;
 
     /// Lowers the tolerance of the adaptive steps.
-    fn tighten(control: &mut Self::Control, tolerance: f64);
+    fn tighten(&mut self, _tolerance: f64) {}
 
     /// Number of adaptive steps rejected for their error.
-    fn rejected(control: &Self::Control) -> u64;
+    fn rejected(&self) -> u64;
+
+    /// The maximum errors so far.
+    fn worst(&self) -> ErrorBudget;
+
+    /// The times at which the load of each body bends, as far as the run was looked at before.
+    fn bends(&self) -> Vec<&[f64]>;
+
+    /// A clone.
+    fn boxed(&self) -> Box<dyn Control<C>>;
 
     /// Saves the contact with a run that continues from there.
     #[cfg(feature = "checkpoint")]
-    fn save_run(&self, path: &Path, run: (&Progress, &Self::Control)) -> Result<()>;
+    fn save_run(&self, contact: &C, progress: &Progress, path: &Path) -> Result<()>;
 
     /// Whether a save is due on any rank: clocks differ.
     #[cfg(feature = "checkpoint")]
-    fn is_due(&self, due: bool) -> Result<bool> {
+    fn is_due(&self, _: &C, due: bool) -> Result<bool> {
         Ok(due)
+    }
+}
+
+impl<C> Clone for Box<dyn Control<C>> {
+    fn clone(&self) -> Self {
+        self.boxed()
     }
 }

@@ -2,26 +2,30 @@
 //! there.
 
 use crate::error::Result;
-use crate::run::SAME_TIME;
+use crate::run::progress::SAME_TIME;
+use crate::run::trace::ROUNDING;
 
-/// Number of equal parts of a step at which its load is looked at, besides the samples of the whole
-/// run within it.
-pub(super) const PARTS: usize = 8;
+/// Number of parts of a step at whose ends its load is looked at, of even number: the middle is one of them.
+const PARTS: usize = 64;
+/// The others are uneven by so much of a part, so that no oscillation is zero at all of them.
+const UNEVEN: f64 = 0.4;
+/// The golden ratio spreads multiples evenly.
+const GOLDEN: f64 = 0.618_033_988_749_895;
 /// An event so early in a step, as a part of it, happens at its start.
 const AT_START: f64 = 1e-3;
 
 /// Start and end of a step.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Span {
-    pub(super) now: f64,
-    pub(super) end: f64,
+pub(crate) struct Span {
+    pub(crate) now: f64,
+    pub(crate) end: f64,
 }
 
 /// The load at times of a step in ascending order, from its start to its end: force, or depth of
 /// the load point or of the far end of its spring. Each maximum and minimum of the others is among
 /// them as well.
-#[derive(Debug, Clone)]
-pub(super) struct Passage {
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Passage {
     points: Vec<(f64, f64)>,
     /// The load at the start, in the middle and at the end.
     marks: [f64; 3],
@@ -30,32 +34,26 @@ pub(super) struct Passage {
 }
 
 impl Passage {
-    /// For steps of a run that is looked at so many times: no step allocates.
-    pub(super) fn new(samples: usize) -> Passage {
-        let most = samples + PARTS + 1;
-        Passage { points: Vec::with_capacity(2 * most), seen: Vec::with_capacity(most), marks: [0.0; 3] }
-    }
-
-    /// Looks at the load within a step that begins with a load of this size, at equal parts of the
-    /// step and where the run was sampled.
-    pub(super) fn look(
+    /// Looks at the load within a step that begins with a load of this size, at parts of the step and at those of the
+    /// ascending `times` that lie within it.
+    pub(crate) fn look(
         &mut self,
         Span { now, end }: Span,
         first: f64,
-        samples: &[(f64, f64)],
+        times: &[f64],
         mut load: impl FnMut(f64) -> Result<f64>,
     ) -> Result<()> {
-        let after = samples.partition_point(|sample| sample.0 <= now);
-        let mut others = samples[after..].iter().take_while(|sample| sample.0 < end).peekable();
+        let mut others = times[times.partition_point(|time| *time <= now)..].iter().copied().peekable();
         self.seen.clear();
         self.points.clear();
         self.seen.push((now, first));
         for k in 1..=PARTS {
-            let time = if k == PARTS { end } else { now + (end - now) * k as f64 / PARTS as f64 };
-            while let Some(other) = others.next_if(|other| other.0 < time) {
-                self.seen.push(*other);
+            let uneven = if k % (PARTS / 2) == 0 { 0.0 } else { UNEVEN * (k as f64 * GOLDEN).fract() };
+            let time = if k == PARTS { end } else { now + (end - now) * (k as f64 - uneven) / PARTS as f64 };
+            while let Some(other) = others.next_if(|other| *other < time) {
+                self.seen.push((other, load(other)?));
             }
-            others.next_if(|other| other.0 == time);
+            others.next_if_eq(&time);
             let value = load(time)?;
             self.seen.push((time, value));
             if k == PARTS / 2 {
@@ -77,19 +75,50 @@ impl Passage {
     }
 
     /// Maximum load.
-    pub(super) fn top(&self) -> f64 {
+    pub(crate) fn top(&self) -> f64 {
         self.points.iter().fold(f64::NEG_INFINITY, |most, point| point.1.max(most))
     }
 
+    /// Looks at loads that were seen before.
+    pub(crate) fn show(&mut self, seen: &[(f64, f64)]) {
+        self.points.clear();
+        self.points.extend_from_slice(seen);
+    }
+
+    /// Loads within the step, apart from its ends, and their times.
+    pub(crate) fn inside(&self) -> impl Iterator<Item = (f64, f64)> {
+        self.points[1..].iter().copied().take(self.points.len().saturating_sub(2))
+    }
+
+    /// Times within the step at which the load turns, as far as this is not its rounding, and whether it is at a top.
+    pub(crate) fn turns(&self) -> impl Iterator<Item = (f64, bool)> {
+        let size = self.points.iter().fold(0.0, |most: f64, point| most.max(point.1.abs()));
+        let (mut last, mut rises) = (self.points.first().copied(), None);
+        self.points.iter().filter_map(move |point| {
+            let change = point.1 - last.map_or(point.1, |last| last.1);
+            if change.abs() <= ROUNDING * size {
+                return None;
+            }
+            let turn = last.replace(*point).filter(|_| rises.is_some_and(|rises| rises != (change > 0.0)));
+            rises = Some(change > 0.0);
+            turn.map(|turn| (turn.0, change < 0.0))
+        })
+    }
+
+    /// The first top of the load within the step.
+    pub(crate) fn first_top(&self) -> Option<f64> {
+        self.turns().find(|turn| turn.1).map(|turn| turn.0)
+    }
+
     /// Whether the load ever falls below that at the start.
-    pub(super) fn falls(&self) -> bool {
+    pub(crate) fn falls(&self) -> bool {
         self.points.iter().any(|point| point.1 < self.marks[0])
     }
 
     /// Maximum deviation of the load from the parabola through the start, the middle and the end of
     /// the step. How far apart bodies are does not matter where this is more than `size`, the
     /// maximum load.
-    pub(super) fn bend(&self, size: f64) -> f64 {
+    pub(crate) fn bend(&self, size: f64) -> f64 {
         let near = |load: f64| load.max(-size);
         let ([a, b, c], Span { now, end }) = (self.marks.map(near), self.span());
         let off = |&(time, load): &(f64, f64)| {
@@ -100,7 +129,7 @@ impl Passage {
         self.points.iter().map(off).fold(0.0, f64::max)
     }
 
-    fn span(&self) -> Span {
+    pub(crate) fn span(&self) -> Span {
         let [first, .., last] = self.points[..] else { return Span { now: 0.0, end: 0.0 } };
         Span { now: first.0, end: last.0 }
     }
@@ -109,7 +138,7 @@ impl Passage {
     /// at its start part, or that are apart touch: where `load` passes `surface`, the depth that
     /// touches a surface that nothing presses on at a time, which only falls. Where they touch,
     /// they overlap by at most `overshoot`; where they part, they are apart by as much.
-    pub(super) fn first_event(
+    pub(crate) fn first_event(
         &self,
         mut touch: bool,
         overshoot: f64,
@@ -167,7 +196,7 @@ impl Passage {
 
     /// The first time within the step at which a force ends that acts at its start, or begins: the
     /// last one without force.
-    pub(super) fn first_change_of_force(&self, load: &mut impl FnMut(f64) -> Result<f64>) -> Result<Option<f64>> {
+    pub(crate) fn first_change_of_force(&self, load: &mut impl FnMut(f64) -> Result<f64>) -> Result<Option<f64>> {
         let (Span { now, end }, mut presses) = (self.span(), self.marks[0] > 0.0);
         let near = now + SAME_TIME * (end - now);
         for pair in self.points.windows(2) {

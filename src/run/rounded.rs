@@ -6,15 +6,15 @@ use crate::load::{Load, LoadHistory};
 /// A history in which the bodies just touch where a load is positive, but below `least`: levels are
 /// powers of loads, and those of a pulse that begins at 1e-250 of its maximum underflow.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Rounded<'a> {
-    pub(super) history: &'a dyn LoadHistory,
+pub(crate) struct Rounded<'a> {
+    pub(crate) history: &'a dyn LoadHistory,
     /// Approach at which the undisturbed bodies touch.
-    pub(super) rest: f64,
-    pub(super) least: f64,
+    pub(crate) rest: f64,
+    pub(crate) least: f64,
 }
 
 impl Rounded<'_> {
-    pub(super) fn round(&self, mut load: Load) -> Load {
+    pub(crate) fn round(&self, mut load: Load) -> Load {
         let (value, touch) = match &mut load {
             Load::Force { normal, .. } => (normal, 0.0),
             Load::Approach { approach: value, .. } | Load::Spring { drive: value, .. } => (value, self.rest),

@@ -1,0 +1,249 @@
+//! Steps as long as their error allows, which is measured: each is taken whole and in two halves.
+//!
+//! The halves are kept. How far the whole is from them tells the error, in the measure of the [`Judge`] of the
+//! contact. What happens within a step and is over at its end does not show there: so the control looks at the load
+//! within the step, and ends steps at its events.
+
+#[cfg(feature = "checkpoint")]
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::contact::StepReport;
+use crate::error::{Error, Result, StepError, within};
+use crate::load::{Load, LoadHistory};
+use crate::run::Contact;
+use crate::run::control::{Control, Course};
+use crate::run::error_budget::ErrorBudget;
+use crate::run::histories::Histories;
+use crate::run::judge::{FIRST_STEP, Judge, MAX_GROWTH, Record, Tries};
+use crate::run::passage::{Passage, Span};
+#[cfg(feature = "checkpoint")]
+use crate::run::progress::Progress;
+use crate::run::progress::{SAME_TIME, Stepping};
+use crate::run::rounded::Rounded;
+
+/// Rounding of times: no step is shorter than this part of the time.
+const SHORTEST: f64 = 8.0 * f64::EPSILON;
+/// Within so many of the shortest steps after a jump or a corner, the creep may be faster than times are resolved:
+/// such a step is accepted.
+const LATE: f64 = 64.0;
+/// Limit of the ratio of a step to the one before.
+const MIN_GROWTH: f64 = 0.1;
+/// A step may have so many times the error that it aims at.
+const ALLOWED: f64 = 3.0;
+/// Maximum deviation of the load from a parabola within a step, over the maximum load.
+const BEND: f64 = 0.03;
+
+/// The control of the steps of a run, and the state at the start of the last one.
+#[derive(Debug, Clone)]
+pub(crate) struct Doubled<C, J> {
+    pub(crate) record: Record<J>,
+    before: C,
+    /// Whether the last step was taken in two halves.
+    halved: bool,
+    tries: Tries<C>,
+    /// The load within the step.
+    passage: Passage,
+}
+
+impl<C: Contact, J: Judge<C>> Doubled<C, J> {
+    pub(crate) fn new(contact: &C, stepping: Stepping, until: f64) -> Doubled<C, J> {
+        let (start, (_, tolerance)) = (contact.time(), stepping.lengths());
+        Doubled::continued(contact, Record { tolerance, start, until, by_force: true, ..Record::default() })
+    }
+
+    pub(crate) fn continued(contact: &C, record: Record<J>) -> Doubled<C, J> {
+        let (before, whole) = (contact.clone(), J::trial(contact));
+        let tries = Tries { halves: whole.clone(), middle: whole.clone(), whole };
+        Doubled { record, before, halved: false, tries, passage: Passage::default() }
+    }
+
+    /// The history that the steps follow.
+    fn rounded<'a>(&self, contact: &C, history: &'a dyn LoadHistory) -> Rounded<'a> {
+        Rounded { history, rest: J::rest(contact), least: self.record.least_load }
+    }
+
+    fn take_step(&mut self, contact: &mut C, course: &Course<'_>) -> Result<StepReport> {
+        let history = course.histories.first();
+        if self.record.tolerance > 0.0 && self.record.bends.is_none() {
+            self.record.look(contact, history)?;
+        }
+        let rounded = self.rounded(contact, history);
+        match course.given {
+            Some((time, &[load, ..])) => contact.step_to(time, rounded.round(load)),
+            _ => self.step(contact, &rounded, course),
+        }
+    }
+
+    /// Takes the longest step that the tolerance allows, towards the next stop of the run.
+    fn step(&mut self, contact: &mut C, history: &dyn LoadHistory, course: &Course<'_>) -> Result<StepReport> {
+        let &Course { stop, corner, cancelled, .. } = course;
+        let (now, is_first, tolerance) = (contact.time(), self.record.next == 0.0, self.record.tolerance);
+        let attracts = contact.attracts();
+        let load_at = |time: f64| history.checked_before(time, attracts);
+        if stop - now <= 2.0 * SHORTEST * stop {
+            let load = load_at(stop)?;
+            return contact.step_to(stop, load);
+        }
+        if is_first {
+            self.record.corner = now;
+        }
+        let stop = if is_first { stop } else { J::stop(&self.record, contact, stop, corner) };
+        // times near 0 are resolved more finely; a jump may come so late that the creep after it is faster than times
+        // are resolved
+        let shortest = (SHORTEST * now).max(SHORTEST * SHORTEST * stop);
+        let is_late = now > 0.0 && now - self.record.corner <= LATE * shortest;
+        let mut length = if is_first { FIRST_STEP * (stop - now) } else { self.record.next }.max(shortest);
+        let longest = J::longest_growth(contact, load_at(stop)?);
+        let first = J::size(contact, history.checked_at(now, attracts)?)?;
+        let mut last: Option<(f64, f64)> = None;
+        loop {
+            if is_late {
+                length = length.max(shortest);
+            } else if length < shortest {
+                return Err(StepError::StepTooShort { time: now, dt: length, tolerance }.into());
+            }
+            let mut end = if now + (1.0 + SAME_TIME) * length >= stop { stop } else { now + length };
+            if self.bends(contact, history, Span { now, end }, first)? && end - now > 2.0 * shortest {
+                length = 0.5 * (end - now);
+                continue;
+            }
+            let event = J::event(&self.record, contact, history, &self.passage, &mut self.tries.whole)?;
+            end = event.unwrap_or(end);
+            let span = Span { now, end };
+            let report = self.try_both(contact, history, span, cancelled)?;
+            let error = J::error(&self.record, contact, &mut self.tries, history, span, &report)?;
+            let order = match last {
+                _ if is_first => 1.0,
+                Some((length, before)) if 0.0 < error && error < before => {
+                    ((before / error).ln() / (length / (end - now)).ln()).clamp(1.0, J::ORDER)
+                }
+                Some(_) => 1.0,
+                None => J::ORDER,
+            };
+            let (aim, most) = (J::aim(&self.record, contact, span), if error > 0.0 { longest } else { MAX_GROWTH });
+            let growth = (aim / error).powf(1.0 / order).clamp(MIN_GROWTH, most);
+            if error <= ALLOWED * aim || is_late && length <= shortest {
+                self.record.next = match event {
+                    Some(_) => growth.clamp(0.5, 1.0) * length,
+                    None => growth.max(0.5) * (end - now).max(length.min(stop - now)),
+                };
+                self.record.greatest = J::greatest(&self.record, &self.tries.halves);
+                self.record.touches = event.is_some() && contact.is_separated();
+                self.record.worst = Some(self.record.worst.map_or(error, |worst| worst.max(error)));
+                J::copy(contact, &self.tries.halves);
+                J::accept(&self.record, contact);
+                return Ok(StepReport { dt: end - now, time_error: Some(error), ..report });
+            }
+            self.record.rejected += 1;
+            last = Some((end - now, error));
+            length = growth.min(0.5) * (end - now);
+        }
+    }
+
+    /// Looks at the load within a step, which begins with one of this size: whether it is off a parabola.
+    fn bends(&mut self, contact: &C, history: &dyn LoadHistory, span: Span, first: f64) -> Result<bool> {
+        let size_at = |time: f64| J::size(contact, history.checked_before(time, contact.attracts())?);
+        self.passage.look(span, first, self.record.bends.as_deref().unwrap_or_default(), size_at)?;
+        self.record.greatest_load = self.record.greatest_load.max(self.passage.top());
+        // deviations below the least normal number are rounding
+        let straight = (BEND * self.record.greatest_load).max(f64::MIN_POSITIVE);
+        Ok(self.passage.bend(self.record.greatest_load) > straight)
+    }
+
+    /// Takes a step whole and in two halves. Returns the report of the second.
+    fn try_both(
+        &mut self,
+        contact: &C,
+        history: &dyn LoadHistory,
+        Span { now, end }: Span,
+        cancelled: Option<&AtomicBool>,
+    ) -> Result<StepReport> {
+        let Tries { whole, halves, middle } = &mut self.tries;
+        let to = |contact: &mut C, time: f64| {
+            unless_cancelled(cancelled)?;
+            J::take(contact, time, history.checked_before(time, contact.attracts())?)
+        };
+        J::copy(whole, contact);
+        to(whole, end)?;
+        J::copy(halves, contact);
+        to(halves, now + 0.5 * (end - now))?;
+        J::copy(middle, halves);
+        to(halves, end)
+    }
+}
+
+fn unless_cancelled(flag: Option<&AtomicBool>) -> Result<()> {
+    if flag.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
+        Err(Error::Cancelled { what: "a step" })
+    } else {
+        Ok(())
+    }
+}
+
+impl<C: Contact, J: Judge<C>> Control<C> for Doubled<C, J> {
+    fn bears(&self, _: &C, loads: &[Load]) -> bool {
+        self.record.load.as_ref() == loads.first()
+    }
+
+    fn advance(&mut self, contact: &mut C, course: &Course<'_>) -> Result<StepReport> {
+        unless_cancelled(course.cancelled)?;
+        J::copy(&mut self.before, contact);
+        let report = self.take_step(contact, course).inspect_err(|_| J::copy(contact, &self.before))?;
+        self.halved = course.given.is_none();
+        self.record.load = Some(match course.given {
+            Some((_, &[load, ..])) => load,
+            _ => course.histories.first().checked_before(report.time, contact.attracts())?,
+        });
+        if report.time >= course.corner {
+            J::turn(contact);
+        }
+        if report.dt == 0.0 || report.time >= course.corner {
+            self.record.next = 0.0;
+        }
+        Ok(report)
+    }
+
+    fn within(&self, contact: &C, histories: &Histories<'_>, time: f64) -> Result<(C, StepReport)> {
+        let rounded = self.rounded(contact, histories.first());
+        let (history, attracts): (&dyn LoadHistory, _) = (&rounded, contact.attracts());
+        let (start, end) = (self.before.time(), contact.time());
+        within("time within the last step", time, (start..=end).contains(&time), "between its start and its end")?;
+        let (mut found, load) = (contact.clone(), history.checked_at(time, attracts)?);
+        if time < end {
+            // an adaptive step is taken in two halves
+            let mut trial = if self.halved { J::trial(&self.before) } else { self.before.clone() };
+            let middle = start + 0.5 * (end - start);
+            if self.halved && time > middle {
+                trial.step_to(middle, history.checked_before(middle, attracts)?)?;
+            }
+            if time > start {
+                trial.step_to(time, load)?;
+            }
+            J::copy(&mut found, &trial);
+        }
+        let report = found.report(time - start, load);
+        Ok((found, report))
+    }
+
+    fn rejected(&self) -> u64 {
+        self.record.rejected
+    }
+
+    fn worst(&self) -> ErrorBudget {
+        ErrorBudget { time: self.record.worst, ..ErrorBudget::default() }
+    }
+
+    fn bends(&self) -> Vec<&[f64]> {
+        self.record.bends.iter().map(|bends| &bends[..]).collect()
+    }
+
+    fn boxed(&self) -> Box<dyn Control<C>> {
+        Box::new(self.clone())
+    }
+
+    #[cfg(feature = "checkpoint")]
+    fn save_run(&self, contact: &C, progress: &Progress, path: &Path) -> Result<()> {
+        J::save(contact, progress, &self.record, path)
+    }
+}
