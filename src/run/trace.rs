@@ -45,9 +45,9 @@ pub(crate) fn looks(
 pub(crate) fn bends(samples: &[(f64, f64)]) -> Vec<f64> {
     let is_bent = |three: &&[(f64, f64)]| {
         let [(start, a), (time, b), (end, c)] = three[..] else { return false };
-        let line = a + (c - a) * (time - start) / (end - start);
+        let off = (a + (c - a) * (time - start) / (end - start) - b).abs();
         // a jump has no line
-        !((line - b).abs() <= ROUNDING * a.abs().max(b.abs()).max(c.abs()))
+        off.is_nan() || off > ROUNDING * a.abs().max(b.abs()).max(c.abs())
     };
     let mut times: Vec<f64> = samples.windows(3).filter(is_bent).map(|three| three[1].0).collect();
     times.dedup();
