@@ -67,6 +67,7 @@ impl<C: Contact, J: Judge<C>> Doubled<C, J> {
         let history = course.histories.first();
         if self.record.tolerance > 0.0 && self.record.bends.is_none() {
             self.record.look(contact, history)?;
+            self.passage.reserve(self.record.bends.as_ref().map_or(0, Vec::len));
         }
         let rounded = self.rounded(contact, history);
         match course.given {

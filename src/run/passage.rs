@@ -34,6 +34,13 @@ pub(crate) struct Passage {
 }
 
 impl Passage {
+    /// Makes room for steps of a run whose load bends so many times: no step allocates.
+    pub(crate) fn reserve(&mut self, bends: usize) {
+        let most = bends + PARTS + 1;
+        self.seen.reserve(most);
+        self.points.reserve(2 * most);
+    }
+
     /// Looks at the load within a step that begins with a load of this size, at parts of the step and at those of the
     /// ascending `times` that lie within it.
     pub(crate) fn look(

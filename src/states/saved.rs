@@ -55,7 +55,7 @@ impl StatesContact {
     /// Puts a saved state in the place of this one. The contact must be made of the same states and material, with
     /// the same time rule and temperature. A run that saved it ([`Run::autosave_to`](crate::run::Run::autosave_to))
     /// goes on with the next
-    /// [`StatesContact::follow`] of the same stepping, by the same steps.
+    /// [`Contact::follow`](crate::run::Contact::follow) of the same stepping, by the same steps.
     ///
     /// Needs the feature `checkpoint`.
     ///
