@@ -387,7 +387,7 @@ impl StatesContact {
     /// traction w_i \[Pa\]. With p_e(l) the pressure of the elastic contact of unit compliance, p = Σ w_i (p_e(l_i) −
     /// p_e(l_i−1)), l_0 = 0.
     pub fn tractions(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
-        self.levels.groups().map(|(top, traction, _)| (top, traction)).take_while(|(top, _)| *top <= self.levels.level)
+        self.levels.groups().map(|(top, traction, _)| (top, traction)).take(self.levels.held())
     }
 }
 

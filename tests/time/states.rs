@@ -295,3 +295,26 @@ fn other_load_points_and_levels_beyond_the_sweep_are_refused() {
     refused(beyond.map(|error| (error, "sweep further")));
     assert_eq!(format!("{contact:?}"), before);
 }
+
+/// The tractions of the groups carry the force in every step of 200 random histories of forces: the topmost group is among them where
+/// its level and the edge are one but for rounding.
+#[test]
+fn tractions_carry_the_force() {
+    let (states, mut compared) = (ElasticStates::sphere(10.0e-3).unwrap(), 0);
+    for scene in 0..200 {
+        let mut draws = Draws::new(7100 + scene);
+        let terms: Vec<(f64, f64)> = (0..2).map(|_| (draws.between(0.1, 1.0), draws.power_of_ten(-1.0, 1.0))).collect();
+        let mut contact = StatesContact::new(&states, &body(draws.between(0.05, 0.5), &terms)).unwrap();
+        for _ in 0..30 {
+            let force = if draws.chance(0.1) { 0.0 } else { draws.between(0.0, 1.0) };
+            let dt = if draws.chance(0.2) { 0.0 } else { draws.power_of_ten(-2.0, 0.5) };
+            contact.step(dt, Load::force(force)).unwrap();
+            let mut below = 0.0;
+            let carried: f64 =
+                contact.tractions().map(|(top, traction)| traction * (top - std::mem::replace(&mut below, top))).sum();
+            assert!((carried - force).abs() < 1e-9, "scene {scene}: {carried} of {force} N");
+            compared += usize::from(force > 0.0);
+        }
+    }
+    assert!(compared > 4000, "{compared}");
+}

@@ -306,7 +306,7 @@ impl Levels {
     }
 
     /// Number of groups that are held.
-    fn held(&self) -> usize {
+    pub(super) fn held(&self) -> usize {
         self.groups_to(self.level)
     }
 
