@@ -46,6 +46,17 @@ pub(crate) struct Doubled<C, J> {
     passage: Passage,
 }
 
+/// The order at which the error of a step fell from the length tried before, at most the one of the rule.
+fn order(before: Option<(f64, f64)>, (length, error): (f64, f64), most: f64) -> f64 {
+    match before {
+        Some((longer, before)) if 0.0 < error && error < before => {
+            ((before / error).ln() / (longer / length).ln()).clamp(1.0, most)
+        }
+        Some(_) => 1.0,
+        None => most,
+    }
+}
+
 impl<C: Contact, J: Judge<C>> Doubled<C, J> {
     pub(crate) fn new(contact: &C, stepping: Stepping, until: f64) -> Doubled<C, J> {
         let (start, (_, tolerance)) = (contact.time(), stepping.lengths());
@@ -114,14 +125,7 @@ impl<C: Contact, J: Judge<C>> Doubled<C, J> {
             let span = Span { now, end };
             let report = self.try_both(contact, history, span, cancelled)?;
             let error = J::error(&self.record, contact, &mut self.tries, history, span, &report)?;
-            let order = match last {
-                _ if is_first => 1.0,
-                Some((length, before)) if 0.0 < error && error < before => {
-                    ((before / error).ln() / (length / (end - now)).ln()).clamp(1.0, J::ORDER)
-                }
-                Some(_) => 1.0,
-                None => J::ORDER,
-            };
+            let order = if is_first { 1.0 } else { order(last, (end - now, error), J::ORDER) };
             let (aim, most) = (J::aim(&self.record, contact, span), if error > 0.0 { longest } else { MAX_GROWTH });
             let growth = (aim / error).powf(1.0 / order).clamp(MIN_GROWTH, most);
             if error <= ALLOWED * aim || is_late && length <= shortest {

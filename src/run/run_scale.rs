@@ -55,6 +55,17 @@ pub(super) struct RunScale {
     switches: Vec<f64>,
 }
 
+/// What a run sees of its load, with both sides of jumps.
+fn seen(history: &dyn LoadHistory, [now, until]: [f64; 2], attracts: bool) -> Result<Vec<(f64, f64)>> {
+    let mut seen = Vec::new();
+    for look in looks(history, [now, until], attracts) {
+        let (time, [before, at]) = look?;
+        let both = [before, at].into_iter().skip(usize::from(before == at));
+        seen.extend(both.map(|load| (time, load.main())));
+    }
+    Ok(seen)
+}
+
 impl RunScale {
     /// The scale of a run from `state` along the history of a body to the time `until`. Rejects invalid loads of the
     /// history. Finds how the bodies respond where they meet, to within such a tolerance of the steps.
@@ -78,12 +89,8 @@ impl RunScale {
         let decades = (1..=TIMES_PER_DECADE * DECADES)
             .map(|k| now + span * 10f64.powf(-f64::from(k) / f64::from(TIMES_PER_DECADE)));
         let corners: Vec<f64> = history.breakpoints(now).take_while(|&next| next <= until).take(BREAKPOINTS).collect();
-        let (mut seen, mut passage) = (Vec::new(), Passage::default());
-        for look in looks(history, [now, until], scene.ground.attraction.is_some()) {
-            let (time, [before, at]) = look?;
-            let both = [before, at].into_iter().skip(usize::from(before == at));
-            seen.extend(both.map(|load| (time, load.main())));
-        }
+        let seen = seen(history, [now, until], scene.ground.attraction.is_some())?;
+        let mut passage = Passage::default();
         scale.bends = bends(&seen);
         passage.show(&seen);
         let mut times: Vec<f64> = equal.chain(corners).chain(passage.turns().map(|turn| turn.0)).collect();

@@ -4,7 +4,7 @@
 //! traction, the creep of the past included, the net traction of a state in balance is q = M x/c + p, and its energy
 //! E = Σ ½ x (q + p) − ∫ₕ^∞ s. Only the stiffness of the mean and p differ between loads: a force fixes the mean of
 //! q, a spring sets its stiffness in series with the bodies, and a given approach of bodies whose mean is held fixes
-//! the mean of h, with a multiplier λ. Free tilts are two more [modes](Tilts) beside the mean. So the loads are in
+//! the mean of h, with a multiplier λ. Free tilts are two more [modes](super::balance::Tilts) beside the mean. So the loads are in
 //! balance in every iteration.
 //!
 //! E falls along conjugate directions (Polak & Ribière, Rev. Fr. Inform. Rech. Opér. 16, 1969) of the gradient
@@ -15,6 +15,7 @@
 
 use std::sync::atomic::Ordering;
 
+use super::balance::Balance;
 use super::front::{Front, Moved};
 use super::passes::InGap;
 use super::{Attracted, AttractedStep};
@@ -22,16 +23,15 @@ use crate::equilibrium::Trial;
 use crate::equilibrium::window::Window;
 use crate::error::{AdhesionError, Error, Result, StepError};
 use crate::kernel::PeriodInverse;
-use crate::linalg::solve_normal_equations;
 use crate::load::Load;
-use crate::parallel::{Rows, for_each_band};
+use crate::parallel::for_each_band;
 use crate::solver::{Counts, ModeCoefficients, Solution};
 
 /// Greatest number of iterations.
 const MAX_ITERATIONS: usize = 2000;
 /// A step that raises E is shortened by this factor, so many times.
 const SHORTER: f64 = 0.4;
-const SHORTENINGS: usize = 12;
+pub(super) const SHORTENINGS: usize = 12;
 /// Rounding of E, over the sum of its parts.
 const ROUNDING: f64 = 1e-13;
 /// At this curvature over the curvature of the convex part the tolerance of r is what was asked; below, r is to be
@@ -55,55 +55,8 @@ const LOOKS: usize = 4;
 const UNSTABLE: f64 = -1e-5;
 /// q is computed afresh after so many iterations.
 const FRESH: usize = 50;
-/// A mode that depends on the others to this part of its square is left out.
-const DEPENDENT: f64 = 1e-11;
 /// Bodies without contact whose attraction carries this part of the load, or less, fly apart.
 const CARRIED: f64 = 0.5;
-
-/// The equations of a step: q = M x/c + p, where M gives the mean its stiffness.
-pub(super) struct Balance {
-    pub(super) compliance: f64,
-    /// The stiffness of the mean of x, which replaces the one in M.
-    of_mean: f64,
-    /// p.
-    pub(super) offset: f64,
-    /// Compliance of the mean, in the preconditioner.
-    pub(super) soft: f64,
-    /// Whether the mean of x is given.
-    pub(super) held: bool,
-    /// The stiffness of M, and the compliance of K, of the mean.
-    pub(super) inverse: [f64; 2],
-    pub(super) tilts: Option<Tilts>,
-}
-
-/// Motions m of a body that tilts freely, with the modes B: x = c N q − B m, and Bᵀ q + D m carries the load, D being the
-/// stiffness of a spring. So q = M x/c + W m with W = M B/c, and m follows from x.
-pub(super) struct Tilts {
-    images: [Vec<f64>; 3],
-    /// Bᵀ W + D.
-    gram: [[f64; 3]; 3],
-    load: [f64; 3],
-    /// The motion of x = 0.
-    carried: [f64; 3],
-}
-
-impl Tilts {
-    /// m of the lift x, or of a change of it.
-    fn motion(&self, rows: &Rows, x: &[f64], linear: bool) -> [f64; 3] {
-        let held = rows.sum_terms(|k| Some([0, 1, 2].map(|j| self.images[j][k] * x[k])));
-        let load = if linear { [0.0; 3] } else { self.load };
-        self.solve([0, 1, 2].map(|j| load[j] - held[j]))
-    }
-
-    fn solve(&self, right: [f64; 3]) -> [f64; 3] {
-        solve_normal_equations(&self.gram, right, DEPENDENT)
-    }
-
-    /// W m of a cell.
-    fn at(&self, motion: [f64; 3], k: usize) -> f64 {
-        (0..3).map(|j| self.images[j][k] * motion[j]).sum()
-    }
-}
 
 /// A descent in the gap: what it reads, and what it writes. In the trial x takes the place of the potential, q of the
 /// attraction, and r of the pressure.
@@ -117,83 +70,7 @@ pub(super) struct Descent<'a> {
     pub(super) counts: &'a mut Counts,
 }
 
-impl Balance {
-    /// q of the lift x.
-    pub(super) fn tractions(
-        &self,
-        inverse: &mut PeriodInverse,
-        window: &mut Window,
-        x: &[f64],
-        q: &mut [f64],
-        linear: bool,
-    ) {
-        inverse.apply(x, q, &mut window.work);
-        let rows = window.kernel.rows();
-        let mean = rows.sum(x) / x.len() as f64;
-        let add = (self.of_mean - self.inverse[0] / self.compliance) * mean + if linear { 0.0 } else { self.offset };
-        q.iter_mut().for_each(|q| *q = *q / self.compliance + add);
-        if let Some(tilts) = &self.tilts {
-            let motion = tilts.motion(rows, x, linear);
-            q.iter_mut().enumerate().for_each(|(k, q)| *q += tilts.at(motion, k));
-        }
-    }
-
-    /// p of a cell.
-    pub(super) fn offset_at(&self, k: usize) -> f64 {
-        self.offset + self.tilts.as_ref().map_or(0.0, |tilts| tilts.at(tilts.carried, k))
-    }
-
-    /// Moves x to h ≥ 0, and to its given mean by a shift; returns whether any cell moved.
-    fn project(&self, rows: &Rows, gap: &[f64], x: &mut [f64]) -> bool {
-        let below = x.iter().zip(gap).any(|(x, z)| z + x < 0.0);
-        if !self.held {
-            if below {
-                x.iter_mut().zip(gap).for_each(|(x, z)| *x = x.max(-z));
-            }
-            return below;
-        }
-        let scale: f64 = rows.sum_of_pairs(x, x, |x, _| x.abs()) * 1e-14 + f64::MIN_POSITIVE;
-        // cells at the wall stay there, unless no other is left
-        let (mut shift, mut lifts) = (0.0, false);
-        for _ in 0..SHORTENINGS * 4 {
-            let [sum, free] = rows.sum_terms(|k| {
-                let h = gap[k] + x[k];
-                let moves = (lifts || h > 0.0) && h + shift > 0.0;
-                Some(if moves { [x[k] + shift, 1.0] } else { [-gap[k], 0.0] })
-            });
-            if sum.abs() <= scale || free == 0.0 && sum > 0.0 {
-                break;
-            }
-            lifts |= free == 0.0;
-            shift -= sum / if free > 0.0 { free } else { rows.len() as f64 };
-        }
-        if below || shift != 0.0 {
-            for (x, z) in x.iter_mut().zip(gap) {
-                *x = if lifts || z + *x > 0.0 { (*x + shift).max(-z) } else { -z };
-            }
-        }
-        below || shift != 0.0
-    }
-}
-
 impl AttractedStep<'_> {
-    pub(super) fn balance(&self, window: &Window, inverse: &PeriodInverse) -> Balance {
-        let (c, cells, wanted) = (self.given[0], window.kernel.rows().len() as f64, self.wanted);
-        let PeriodInverse { mean: [stiffness, compliance], .. } = *inverse;
-        let held = compliance == 0.0 && !wanted.translation;
-        let [of_mean, offset] = match self.step.loads[0] {
-            Load::Approach { .. } if held => [0.0, 0.0],
-            Load::Approach { .. } => [1.0 / (c * compliance), 0.0],
-            Load::Force { .. } => [0.0, wanted.total / cells],
-            Load::Spring { stiffness, drive, .. } => {
-                let of_mean = 1.0 / (c * compliance + cells * self.state.held.region.cell_area() / stiffness);
-                [of_mean, of_mean * (drive - self.step.indenter.gap().datum)]
-            }
-        };
-        let soft = 1.0 / (of_mean + 0.5 * stiffness / c);
-        Balance { compliance: c, of_mean, offset, soft, held, inverse: [stiffness, compliance], tilts: None }
-    }
-
     /// Writes z, s, K (z − s) and the motion of the guess of a descent: extrapolated, or of undeformed bodies, which
     /// just touch under a force.
     pub(super) fn begin_in_gap(&self, window: &Window, trial: &mut Trial) {
@@ -225,36 +102,6 @@ impl AttractedStep<'_> {
 }
 
 impl Descent<'_> {
-    /// Gives the balance the free tilts of the body, with the kernel that the window has.
-    pub(super) fn free_tilts(&mut self) {
-        let Descent { problem, balance, inverse, window, counts, .. } = self;
-        let AttractedStep { state, step, wanted, .. } = **problem;
-        let (region, [_, compliance]) = (&state.held.region, inverse.mean);
-        let modes = region.modes(wanted);
-        let mut load = modes.load().map(|unit| wanted.total * unit);
-        // M with the stiffness of the mean that the bodies have
-        (balance.of_mean, balance.offset) = (1.0 / (balance.compliance * compliance), 0.0);
-        let images = [0, 1, 2].map(|j| {
-            let mode: Vec<f64> = (0..region.len()).map(|k| modes.at(k)[j]).collect();
-            let mut image = vec![0.0; mode.len()];
-            if modes.free()[j] {
-                balance.tractions(inverse, window, &mode, &mut image, true);
-                counts.convolutions += 1;
-            }
-            image
-        });
-        let rows = window.kernel.rows();
-        let mut gram = [0, 1, 2].map(|i| rows.sum_terms(|k| Some([0, 1, 2].map(|j| modes.at(k)[i] * images[j][k]))));
-        if let Load::Spring { stiffness, drive, .. } = step.loads[0] {
-            let stiffness = stiffness / region.cell_area();
-            gram[0][0] += stiffness;
-            load[0] = stiffness * (drive - step.indenter.gap().datum);
-        }
-        let mut tilts = Tilts { images, gram, load, carried: [0.0; 3] };
-        tilts.carried = tilts.solve(load);
-        balance.tilts = Some(tilts);
-    }
-
     /// Finishes z, s and K (z − s) of the trial from their guess, in the gap of the trial.
     pub(super) fn run(&mut self) -> Result<()> {
         let AttractedStep { state, step, stop, wanted, .. } = *self.problem;

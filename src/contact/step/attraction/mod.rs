@@ -5,6 +5,7 @@
 //! one, −Σ ∫ₕ^∞ s, and may have several minima. A step [descends in the gap](descent) from the state before it, and
 //! ends in the valley that this state belongs to; bodies that end descend with the [near field](near_field) of K.
 
+mod balance;
 mod descent;
 mod energy;
 mod front;
