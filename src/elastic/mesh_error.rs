@@ -117,7 +117,8 @@ impl State<'_> {
             return Ok(None);
         }
         let cells = [n1 / steps[0], n2 / steps[1]];
-        if cells.contains(&0) {
+        // a single cell has no error, and no mean of a period is displaced
+        if cells[0] * cells[1] < 2 {
             return Ok(None);
         }
         let grid = Grid::new(cells, [0, 1].map(|axis| (cells[axis] * steps[axis]) as f64 * spacing[axis]))?;
