@@ -117,12 +117,15 @@ impl State<'_> {
             return Ok(None);
         }
         let cells = [n1 / steps[0], n2 / steps[1]];
-        // a single cell has no error, and no mean of a period is displaced
-        if cells[0] * cells[1] < 2 {
-            return Ok(None);
-        }
-        let grid = Grid::new(cells, [0, 1].map(|axis| (cells[axis] * steps[axis]) as f64 * spacing[axis]))?;
-        let Some(kernel) = fields.kernel().on_other_cells(&grid).transpose()? else { return Ok(None) };
+        let lengths = [0, 1].map(|axis| (cells[axis] * steps[axis]) as f64 * spacing[axis]);
+        let made =
+            Grid::new(cells, lengths).and_then(|grid| Ok((fields.kernel().on_other_cells(&grid).transpose()?, grid)));
+        let (kernel, grid) = match made {
+            Ok((Some(kernel), grid)) => (kernel, grid),
+            // cells that are too few, or too large, for this body
+            Ok((None, _)) | Err(Error::OutOfRange { .. } | Error::CountOutOfRange { .. }) => return Ok(None),
+            Err(error) => return Err(error),
+        };
         let fine = |k: usize| k / cells[1] * steps[0] * n2 + k % cells[1] * steps[1];
         let initial = fields.initial_gap();
         let of_body = |body: usize| {
