@@ -1,13 +1,15 @@
 //! The balance of a step in the gap: how the load enters its equations.
 
 use super::AttractedStep;
-use super::descent::{Descent, SHORTENINGS};
 use crate::equilibrium::window::Window;
 use crate::kernel::PeriodInverse;
 use crate::linalg::solve_normal_equations;
 use crate::load::Load;
 use crate::parallel::Rows;
+use crate::solver::Counts;
 
+/// Greatest number of shifts that bring a mean to its value.
+const SHIFTS: usize = 48;
 /// A mode that depends on the others to this part of its square is left out.
 const DEPENDENT: f64 = 1e-11;
 
@@ -94,7 +96,7 @@ impl Balance {
         let scale: f64 = rows.sum_of_pairs(x, x, |x, _| x.abs()) * 1e-14 + f64::MIN_POSITIVE;
         // cells at the wall stay there, unless no other is left
         let (mut shift, mut lifts) = (0.0, false);
-        for _ in 0..SHORTENINGS * 4 {
+        for _ in 0..SHIFTS {
             let [sum, free] = rows.sum_terms(|k| {
                 let h = gap[k] + x[k];
                 let moves = (lifts || h > 0.0) && h + shift > 0.0;
@@ -132,13 +134,16 @@ impl AttractedStep<'_> {
         let soft = 1.0 / (of_mean + 0.5 * stiffness / c);
         Balance { compliance: c, of_mean, offset, soft, held, inverse: [stiffness, compliance], tilts: None }
     }
-}
 
-impl Descent<'_> {
     /// Gives the balance the free tilts of the body, with the kernel that the window has.
-    pub(super) fn free_tilts(&mut self) {
-        let Descent { problem, balance, inverse, window, counts, .. } = self;
-        let AttractedStep { state, step, wanted, .. } = **problem;
+    pub(super) fn free_tilts(
+        &self,
+        balance: &mut Balance,
+        inverse: &mut PeriodInverse,
+        window: &mut Window,
+        counts: &mut Counts,
+    ) {
+        let AttractedStep { state, step, wanted, .. } = *self;
         let (region, [_, compliance]) = (&state.held.region, inverse.mean);
         let modes = region.modes(wanted);
         let mut load = modes.load().map(|unit| wanted.total * unit);

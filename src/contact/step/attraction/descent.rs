@@ -31,7 +31,7 @@ use crate::solver::{Counts, ModeCoefficients, Solution};
 const MAX_ITERATIONS: usize = 2000;
 /// A step that raises E is shortened by this factor, so many times.
 const SHORTER: f64 = 0.4;
-pub(super) const SHORTENINGS: usize = 12;
+const SHORTENINGS: usize = 12;
 /// Rounding of E, over the sum of its parts.
 const ROUNDING: f64 = 1e-13;
 /// At this curvature over the curvature of the convex part the tolerance of r is what was asked; below, r is to be

@@ -88,7 +88,8 @@ impl Descent<'_> {
         let problem = self.problem;
         if problem.wanted.tilts() {
             self.with_near_field(|descent| {
-                descent.free_tilts();
+                let Descent { problem, balance, inverse, window, counts, .. } = descent;
+                problem.free_tilts(balance, inverse, window, counts);
                 Ok(())
             })?;
         }
