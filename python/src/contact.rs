@@ -13,7 +13,6 @@ use crate::errors::OrRaise;
 use crate::grid::Grid;
 use crate::held::Held;
 use crate::interrupt::interruptible;
-use crate::kernels::axis;
 use crate::loads::{Load, loads};
 use crate::materials::Material;
 use crate::recipe::Recipe;
