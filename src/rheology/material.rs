@@ -324,16 +324,16 @@ impl Material {
         Ok(())
     }
 
-    /// C at the loading time `age`. It must not be less than `younger`, the compliance at the loading time `earlier` ≤ `age`.
-    pub(crate) fn checked_compliance(&self, age: f64, (earlier, younger): (f64, f64)) -> Result<f64> {
-        let value = self.contact_compliance(age);
-        if may_follow(value, younger) {
-            return Ok(value);
+    /// C(0), which must be a number ≥ 0.
+    pub(crate) fn glassy_compliance(&self) -> Result<f64> {
+        let glassy = self.contact_compliance(0.0);
+        if may_follow(glassy, 0.0) {
+            return Ok(glassy);
         }
-        let creep = |body: &Body| (body.rheology.creep_compliance(age), body.rheology.creep_compliance(earlier));
-        let (value, previous) =
-            self.bodies.iter().map(creep).find(|&(now, before)| !may_follow(now, before)).unwrap_or((value, younger));
-        Err(self.failure().map_or(MaterialError::InvalidCompliance { time: age, value, previous }.into(), Error::User))
+        let mut of_bodies = self.bodies.iter().map(|body| body.rheology.creep_compliance(0.0));
+        let found = of_bodies.find(|&value| !may_follow(value, value)).map(|value| (value, value));
+        let (value, previous) = found.unwrap_or((glassy, 0.0));
+        Err(self.failure().map_or(MaterialError::InvalidCompliance { time: 0.0, value, previous }.into(), Error::User))
     }
 
     /// The same without the other body, and the other one alone.

@@ -268,7 +268,7 @@ fn resolved_softening(law: &dyn Attraction, material: &Material, grid: &Grid) ->
         Ok(softening(law))
     };
     let softening = unless_failed(|| law.failure(), of_law)?;
-    let cells = cells_in_zone(softening, material.checked_compliance(0.0, (0.0, 0.0))?, grid);
+    let cells = cells_in_zone(softening, material.glassy_compliance()?, grid);
     if cells >= LEAST_ZONE * (1.0 - ROUNDING) {
         return Ok(softening);
     }
@@ -278,7 +278,7 @@ fn resolved_softening(law: &dyn Attraction, material: &Material, grid: &Grid) ->
 
 /// The history of bodies of `material` in a frame, on no cells yet.
 fn history_in(frame: Frame, material: &Material, periodic: [bool; 2]) -> Result<History> {
-    material.checked_compliance(0.0, (0.0, 0.0))?;
+    material.glassy_compliance()?;
     let creep = material.spectrum_for("a contact")?;
     Ok(match frame {
         Frame::Bodies => History::exponential(&creep),

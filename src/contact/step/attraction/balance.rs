@@ -8,7 +8,7 @@ use crate::load::Load;
 use crate::parallel::Rows;
 use crate::solver::Counts;
 
-/// Greatest number of shifts that bring a mean to its value.
+/// Maximum number of shifts that bring a mean to its value.
 const SHIFTS: usize = 48;
 /// A mode that depends on the others to this part of its square is left out.
 const DEPENDENT: f64 = 1e-11;

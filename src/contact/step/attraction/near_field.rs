@@ -18,11 +18,11 @@ use crate::solver::{Counts, Solution};
 
 /// Rounds end where the new F (z − s) changes s by this part of what the tolerance allows.
 const MOST_CHANGE: f64 = 0.3;
-/// Greatest number of rounds.
+/// Maximum number of rounds.
 const MAX_ROUNDS: usize = 60;
 /// What a round takes in of a change of F (z − s).
 const RELAXATION: [f64; 2] = [0.1, 3.0];
-/// Rounds may fail where cells that touch, or act with this share of the greatest attraction, span more than this part of
+/// Rounds may fail where cells that touch, or act with this share of the maximum attraction, span more than this part of
 /// the grid along an axis.
 const LEAST_ACTION: f64 = 0.1;
 const MAX_EXTENT: f64 = 0.8;
@@ -87,11 +87,9 @@ impl Descent<'_> {
     fn run_in_rounds(&mut self) -> Result<()> {
         let problem = self.problem;
         if problem.wanted.tilts() {
-            self.with_near_field(|descent| {
-                let Descent { problem, balance, inverse, window, counts, .. } = descent;
+            self.with_near_field(|Descent { problem, balance, inverse, window, counts, .. }| {
                 problem.free_tilts(balance, inverse, window, counts);
-                Ok(())
-            })?;
+            });
         }
         self.split();
         let (c, mut last, mut relaxation) = (self.balance.compliance, f64::INFINITY, None);
@@ -101,7 +99,7 @@ impl Descent<'_> {
                 gap.iter_mut().zip(&self.own.far[first..]).for_each(|(gap, far)| *gap += c * far);
             });
             self.with_near_field(Descent::run)?;
-            let [change, most] = self.correct(&mut relaxation);
+            let ([change, most], next) = self.correct(relaxation);
             let most = c * most * problem.scene.ground.softening / problem.law.traction(0.0);
             let allowed = MOST_CHANGE * problem.tolerance(self.own.softness);
             if most <= allowed {
@@ -111,20 +109,19 @@ impl Descent<'_> {
             if change > LEAST_GAIN * last && most <= NEARLY * allowed && self.own.exactness > MORE_EXACT * MORE_EXACT {
                 self.own.exactness *= MORE_EXACT;
             }
-            last = change;
-            self.own.relax(relaxation.unwrap_or(1.0));
+            (last, relaxation) = (change, Some(next));
+            self.own.relax(next);
+        }
+        let share = problem.extent(self.trial);
+        if share <= MAX_EXTENT {
+            return Err(problem.not_converged(self.own, last));
         }
         let (time, lengths) = (problem.step.interval.time, problem.scene.ground.grid.lengths());
-        match problem.extent(self.trial) {
-            share if share > MAX_EXTENT => {
-                Err(AdhesionError::FillsGrid { time, share, most: MAX_EXTENT, lengths }.into())
-            }
-            _ => Err(problem.not_converged(self.own, last)),
-        }
+        Err(AdhesionError::FillsGrid { time, share, most: MAX_EXTENT, lengths }.into())
     }
 
     /// Computes with N in the place of K.
-    fn with_near_field(&mut self, compute: impl FnOnce(&mut Self) -> Result<()>) -> Result<()> {
+    fn with_near_field<T>(&mut self, compute: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.counts.convolutions;
         self.window.trade_kernels();
         let done = compute(self);
@@ -144,8 +141,8 @@ impl Descent<'_> {
 
     /// The change of F (z − s), and the part of it that Aitken's rule takes after two rounds (Irons & Tuck, Int. J. Numer.
     /// Methods Eng. 1, 1969): where contact and attraction take most of the grid, F is no small part. Returns
-    /// Σ (z + s) |ΔF (z − s)| and the greatest |ΔF (z − s)|.
-    fn correct(&mut self, relaxation: &mut Option<f64>) -> [f64; 2] {
+    /// Σ (z + s) |ΔF (z − s)| and the maximum |ΔF (z − s)|, and the part; `relaxation` is that of the round before.
+    fn correct(&mut self, relaxation: Option<f64>) -> ([f64; 2], f64) {
         let Descent { own, window, trial, counts, .. } = self;
         let Solution { pressure, attraction, potential, .. } = &trial.solution;
         let (exact, far, changes) = own.image_of_net(&trial.solution, window);
@@ -159,21 +156,20 @@ impl Descent<'_> {
             (0..3).for_each(|sum| sums[sum] += added[sum]);
         }
         let [changed, along, square] = sums;
-        *relaxation = Some(relaxation.map_or(1.0, |last| {
+        let next = relaxation.map_or(1.0, |last| {
             if square > 0.0 { (-last * along / square).clamp(RELAXATION[0], RELAXATION[1]) } else { last }
-        }));
-        [changed, most]
+        });
+        ([changed, most], next)
     }
 
     /// Writes N (z − s) to the potential, and what it lacks of K (z − s) to the far field.
     fn split(&mut self) {
-        let Descent { own, window, trial, counts, .. } = self;
-        window.trade_kernels();
-        let (near, far, _) = own.image_of_net(&trial.solution, window);
-        window.trade_kernels();
-        counts.preconditioner_applications += self.problem.near_price();
-        std::mem::swap(far, &mut trial.solution.potential);
-        far.iter_mut().zip(near).for_each(|(far, near)| *far -= near);
-        trial.solution.potential.copy_from_slice(near);
+        self.with_near_field(|Descent { own, window, trial, counts, .. }| {
+            let (near, far, _) = own.image_of_net(&trial.solution, window);
+            counts.convolutions += 1;
+            std::mem::swap(far, &mut trial.solution.potential);
+            far.iter_mut().zip(near).for_each(|(far, near)| *far -= near);
+            trial.solution.potential.copy_from_slice(near);
+        });
     }
 }
