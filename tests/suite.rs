@@ -2,6 +2,7 @@
 
 use viscocontact_scenes as common;
 
+mod friction;
 mod io;
 mod kernel;
 mod materials;

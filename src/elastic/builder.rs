@@ -9,7 +9,7 @@ use crate::equilibrium::indenter::even_axes_of;
 use crate::equilibrium::{Ground, Indenter, Region};
 use crate::error::{Error, Result, positive};
 use crate::geometry::{Gap, Geometry, Missed, Waves, evaluate};
-use crate::kernel::InfluenceKernel;
+use crate::kernel::{HalfSpace, InfluenceKernel};
 
 /// The parts of an [`ElasticContact`]; see [`ElasticContact::builder`].
 #[derive(Debug, Clone)]
@@ -52,6 +52,12 @@ impl ElasticBuilder {
     /// of two. That of a layer is the one of a half-space of its material.
     pub fn modulus(self, modulus: f64) -> ElasticBuilder {
         ElasticBuilder { modulus: Some(modulus), ..self }
+    }
+
+    /// How the load of the body continues beyond the grid, if it is a half-space.
+    #[cfg(feature = "states")]
+    pub(crate) fn half_space_below(&self) -> Option<HalfSpace> {
+        self.kernel.as_ref().map_or(Some(HalfSpace::LoadedOnGrid), |kernel| kernel.half_space_below())
     }
 
     /// An influence kernel, or an [`Arc`] of one that other contacts on the same grid share; without one,

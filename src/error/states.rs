@@ -75,4 +75,40 @@ pub enum StatesError {
         /// Displacement of the group, 1 in contact.
         displacement: f64,
     },
+
+    /// Bodies that do not respond alike to normal and to tangential loads: their friction is no superposition of
+    /// elastic states.
+    #[error(
+        "these bodies respond to loads along the surface in another way than to normal ones: friction on elastic \
+        states is exact in line contact and at Poisson's ratio 0, where ν = ½ or two bodies are of one material; \
+        with_estimated_friction takes half-spaces of any constant Poisson's ratio"
+    )]
+    OtherKernel,
+
+    /// A load along the surface of a contact without friction.
+    #[error("the contact has no friction that could carry a load along its surface: call with_friction first")]
+    NoFriction,
+
+    /// A force along the surface is more than friction carries.
+    #[error(
+        "at t = {} s the force along the surface is {} times what friction carries, f P: the body slides away; \
+        give less, or prescribe its motion or a spring", rounded(*.time, TIME), rounded(*.over_limit, 5))]
+    Slides {
+        /// End of the step \[s\].
+        time: f64,
+        /// The force over f P.
+        over_limit: f64,
+    },
+
+    /// A part of the contact inside the one that slips cannot stick.
+    #[error(
+        "at t = {} s a part of the contact would have to carry {} times what friction carries, inside the part \
+        that slips: the elastic states do not superpose; take a shorter step",
+        rounded(*.time, TIME), rounded(*.share, 5))]
+    BeyondFriction {
+        /// End of the step \[s\].
+        time: f64,
+        /// θ over f w.
+        share: f64,
+    },
 }

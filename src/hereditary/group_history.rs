@@ -7,25 +7,121 @@ use crate::parallel::combine;
 const ROUNDING: f64 = 1e-12;
 
 /// Displacements W of groups of elements that follow one [`ExponentialRule`]: 1 is the displacement of an element in
-/// contact, 0 that of an undisturbed one.
+/// contact, 0 that of an undisturbed one. Where there is friction, the groups move along the surface too, by U.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct GroupHistory {
     rule: ExponentialRule,
-    /// W of each group, its differences d₁ and d₂, then q_i of each relaxation time.
+    normal: Past,
+    tangential: Option<Past>,
+}
+
+/// What one displacement of the groups was.
+#[derive(Debug)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+struct Past {
+    /// The displacement of each group, its differences d₁ and d₂, then q_i of each relaxation time.
     columns: Vec<Vec<f64>>,
     /// The third difference over the step being committed.
     twists: Vec<f64>,
 }
 
+clone_by_fields! { Past { columns, twists } }
+
 /// Number of columns before the q_i.
 const HEAD: usize = 3;
+
+impl Past {
+    fn new(rule: &ExponentialRule, groups: usize) -> Past {
+        let columns = (0..HEAD + rule.branches()).map(|_| Vec::with_capacity(groups)).collect();
+        Past { columns, twists: Vec::with_capacity(groups) }
+    }
+
+    /// Writes the displacements at the end of the step that the rule weighed last, if no stress acts any more.
+    fn free_displacements(&self, rule: &ExponentialRule, free: &mut Vec<f64>) {
+        let Weights { c, past: [kept, of_change, of_bend], branches, .. } = &rule.tried;
+        let [displacements, changes, bends, stresses @ ..] = &self.columns[..] else { return };
+        free.clone_from(displacements);
+        combine(free, *kept, [*of_change, *of_bend, 0.0], [changes, bends, bends]);
+        for (columns, weights) in stresses.chunks(3).zip(branches.chunks(3)) {
+            let weight = |k: usize| weights.get(k).map_or(0.0, |[decay, ..]| -c * decay);
+            let column = |k: usize| &columns[k.min(columns.len() - 1)][..];
+            combine(free, 1.0, [weight(0), weight(1), weight(2)], [column(0), column(1), column(2)]);
+        }
+    }
+
+    /// Takes in the step that the rule has committed, which ends at the displacements `now`.
+    fn commit(&mut self, rule: &ExponentialRule, now: &[f64]) {
+        let Past { columns, twists } = self;
+        let [displacements, changes, bends, stresses @ ..] = &mut columns[..] else { return };
+        let [of_change, of_bend] = rule.committed.ratios;
+        twists.resize(now.len(), 0.0);
+        for (k, &now) in now.iter().enumerate() {
+            let change = now - displacements[k];
+            let bend = change - of_change * changes[k];
+            twists[k] = bend - of_bend * bends[k];
+            (displacements[k], changes[k], bends[k]) = (now, change, bend);
+        }
+        for (column, &[decay, one, two, three]) in stresses.iter_mut().zip(&rule.committed.branches) {
+            combine(column, decay, [one, two, three], [changes, bends, twists]);
+            rule.forget_relaxed(column);
+        }
+    }
+
+    /// Lets a group be at rest from now on.
+    fn rest(&mut self, group: usize) {
+        self.columns[1..HEAD].iter_mut().for_each(|column| column[group] = 0.0);
+    }
+
+    /// [`GroupHistory::lead`].
+    fn lead(&mut self, group: usize, part: f64, differences: [f64; 2]) {
+        let columns = self.columns[1..HEAD].iter_mut().zip(differences);
+        columns.for_each(|(column, difference)| column[group] += part * difference);
+    }
+
+    #[cfg(feature = "checkpoint")]
+    fn fits(&self, branches: usize, groups: usize) -> bool {
+        let is_whole = |column: &Vec<f64>| column.len() == groups && column.iter().all(|value| value.is_finite());
+        self.columns.len() == HEAD + branches && self.columns.iter().all(is_whole)
+    }
+
+    /// [`GroupHistory::differ_at_most`].
+    fn differs_at_most(&self, rule: &ExponentialRule, [a, b]: [usize; 2], most: f64) -> bool {
+        let [displacements, changes, _, stresses @ ..] = &self.columns[..] else { return true };
+        let difference = displacements[a] - displacements[b];
+        let (mut greatest, mut raised) = (0.0f64, 0.0);
+        let mut strains = stresses.iter().rev().zip(rule.influences());
+        difference.abs() <= most
+            && (changes[a] - changes[b]).abs() <= most
+            && strains.all(|(column, (modulus, influence))| {
+                let strain = (difference - (column[a] - column[b]) / modulus).abs();
+                greatest = greatest.max(strain);
+                raised += influence * strain;
+                greatest.min(raised) <= most
+            })
+    }
+}
 
 impl GroupHistory {
     /// No groups, with room for some.
     pub(crate) fn new(rule: ExponentialRule, groups: usize) -> GroupHistory {
-        let columns = (0..HEAD + rule.branches()).map(|_| Vec::with_capacity(groups)).collect();
-        GroupHistory { rule, columns, twists: Vec::with_capacity(groups) }
+        GroupHistory { normal: Past::new(&rule, groups), tangential: None, rule }
+    }
+
+    /// Lets the groups move along the surface too.
+    pub(crate) fn shear(&mut self, groups: usize) {
+        let mut past = Past::new(&self.rule, groups);
+        past.columns.iter_mut().for_each(|column| column.resize(self.normal.columns[0].len(), 0.0));
+        self.tangential = Some(past);
+    }
+
+    fn pasts(&mut self) -> impl Iterator<Item = &mut Past> {
+        std::iter::once(&mut self.normal).chain(&mut self.tangential)
+    }
+
+    /// Every column.
+    fn columns(&mut self) -> impl Iterator<Item = &mut Vec<f64>> {
+        self.pasts().flat_map(|past| &mut past.columns)
     }
 
     /// The rule; its compliance belongs to the step predicted last.
@@ -47,7 +143,8 @@ impl GroupHistory {
     /// Copies another without reallocating where there is room.
     pub(crate) fn copy_from(&mut self, other: &GroupHistory) {
         self.rule.clone_from(&other.rule);
-        self.columns.clone_from(&other.columns);
+        self.normal.columns.clone_from(&other.normal.columns);
+        self.tangential.clone_from(&other.tangential);
     }
 
     /// Writes the displacement of each group at the end of a step, if nothing presses on it, to `free`. A polynomial
@@ -59,7 +156,7 @@ impl GroupHistory {
         self.rule.compute_weights(dt, interpolant);
         let most = if self.rule.has_dashpot() { f64::MAX } else { 1.0 + ROUNDING };
         loop {
-            self.free_displacements(free);
+            self.normal.free_displacements(&self.rule, free);
             let is_between = free.iter().all(|w| (-ROUNDING..=most).contains(w));
             if is_between || !self.rule.has_less() {
                 return is_between;
@@ -68,40 +165,25 @@ impl GroupHistory {
         }
     }
 
-    fn free_displacements(&self, free: &mut Vec<f64>) {
-        let Weights { c, past: [kept, of_change, of_bend], branches, .. } = &self.rule.tried;
-        let [displacements, changes, bends, stresses @ ..] = &self.columns[..] else { return };
-        free.clone_from(displacements);
-        combine(free, *kept, [*of_change, *of_bend, 0.0], [changes, bends, bends]);
-        for (columns, weights) in stresses.chunks(3).zip(branches.chunks(3)) {
-            let weight = |k: usize| weights.get(k).map_or(0.0, |[decay, ..]| -c * decay);
-            let column = |k: usize| &columns[k.min(columns.len() - 1)][..];
-            combine(free, 1.0, [weight(0), weight(1), weight(2)], [column(0), column(1), column(2)]);
-        }
+    /// U of each group at the end of the step predicted last, if nothing shears it any more.
+    pub(crate) fn predict_shear(&self, free: &mut Vec<f64>) {
+        self.tangential.iter().for_each(|past| past.free_displacements(&self.rule, free));
     }
 
-    /// Accepts the step predicted last, which ends at the displacements `now`.
-    pub(crate) fn commit(&mut self, now: &[f64]) {
+    /// Accepts the step predicted last, which ends at the displacements `now`, and along the surface at `sheared`,
+    /// where the first groups `stick`.
+    pub(crate) fn commit(&mut self, now: &[f64], sheared: &[f64], stick: usize) {
         self.rule.commit();
         let leads = self.leads();
-        let GroupHistory { rule, columns, twists, .. } = self;
-        let [displacements, changes, bends, stresses @ ..] = &mut columns[..] else { return };
-        let [of_change, of_bend] = rule.committed.ratios;
-        twists.resize(now.len(), 0.0);
-        for (k, &now) in now.iter().enumerate() {
-            let change = now - displacements[k];
-            let bend = change - of_change * changes[k];
-            twists[k] = bend - of_bend * bends[k];
-            (displacements[k], changes[k], bends[k]) = (now, change, bend);
+        self.normal.commit(&self.rule, now);
+        if let Some(past) = &mut self.tangential {
+            past.commit(&self.rule, sheared);
         }
-        for (column, &[decay, one, two, three]) in stresses.iter_mut().zip(&rule.committed.branches) {
-            combine(column, decay, [one, two, three], [changes, bends, twists]);
-            rule.forget_relaxed(column);
-        }
-        // a group that was met is at rest from now on
+        // a group that was met is at rest from now on, along the surface as long as it sticks
         if leads {
             let held = now.iter().enumerate().filter(|(_, now)| **now == 1.0);
-            held.for_each(|(k, _)| (changes[k], bends[k]) = (0.0, 0.0));
+            held.for_each(|(k, _)| self.normal.rest(k));
+            self.tangential.iter_mut().for_each(|past| (0..stick).for_each(|k| past.rest(k)));
         }
     }
 
@@ -121,8 +203,12 @@ impl GroupHistory {
 
     /// Lets a group have moved by such a part of these differences besides its own.
     pub(crate) fn lead(&mut self, group: usize, part: f64, differences: [f64; 2]) {
-        let columns = self.columns[1..HEAD].iter_mut().zip(differences);
-        columns.for_each(|(column, difference)| column[group] += part * difference);
+        self.normal.lead(group, part, differences);
+    }
+
+    /// [`GroupHistory::lead`] along the surface.
+    pub(crate) fn lead_shear(&mut self, group: usize, part: f64, differences: [f64; 2]) {
+        self.tangential.iter_mut().for_each(|past| past.lead(group, part, differences));
     }
 
     /// The differences after the step accepted last of what moved by `differences` before, and by `change` in it.
@@ -135,7 +221,7 @@ impl GroupHistory {
         let has_less = self.rule.has_less();
         if has_less {
             self.rule.reduce_order();
-            self.free_displacements(free);
+            self.normal.free_displacements(&self.rule, free);
         }
         has_less
     }
@@ -143,31 +229,41 @@ impl GroupHistory {
     /// Whether it may be the history of so many groups by the rule of `other`; a damaged file may hold any.
     #[cfg(feature = "checkpoint")]
     pub(crate) fn fits(&self, other: &GroupHistory, groups: usize) -> bool {
-        let is_whole = |column: &Vec<f64>| column.len() == groups && column.iter().all(|value| value.is_finite());
-        self.rule.fits(&other.rule) && self.columns.len() == other.columns.len() && self.columns.iter().all(is_whole)
+        let mut pasts = std::iter::once(&self.normal).chain(&self.tangential);
+        self.rule.fits(&other.rule)
+            && self.tangential.is_some() == other.tangential.is_some()
+            && pasts.all(|past| past.fits(self.rule.branches(), groups))
     }
 
     /// The displacement of each group.
     pub(crate) fn displacements(&self) -> &[f64] {
-        &self.columns[0]
+        &self.normal.columns[0]
+    }
+
+    /// The displacement of each group along the surface, if there is friction, and the stress of each relaxation time
+    /// with its modulus, the longest first.
+    pub(crate) fn sheared(&self) -> Option<(&[f64], impl Iterator<Item = (f64, &[f64])>)> {
+        let columns = &self.tangential.as_ref()?.columns;
+        let moduli = self.rule.influences().map(|(modulus, _)| modulus);
+        Some((&columns[0], moduli.zip(columns[HEAD..].iter().rev().map(Vec::as_slice))))
     }
 
     /// Adds an undisturbed group after the others.
     pub(crate) fn push(&mut self) {
-        self.columns.iter_mut().for_each(|column| column.push(0.0));
+        self.columns().for_each(|column| column.push(0.0));
     }
 
     /// Splits a group into two with the same past.
     pub(crate) fn split(&mut self, group: usize) {
-        self.columns.iter_mut().for_each(|column| column.insert(group, column[group]));
+        self.columns().for_each(|column| column.insert(group, column[group]));
     }
 
     /// W of each group and its strains W − q_i/E_i, the strain of the dashpot of each relaxation time: with the most
     /// that they can ever raise a free surface, and what the last step left of older ones.
     pub(crate) fn strains(&self) -> impl Iterator<Item = ([f64; 2], impl Fn(usize) -> f64 + '_)> + '_ {
-        let displacements = &self.columns[0];
+        let displacements = &self.normal.columns[0];
         let decays = self.rule.committed.branches.iter().rev().map(|weights| weights[0]);
-        let branches = self.columns[HEAD..].iter().rev().zip(self.rule.influences()).zip(decays);
+        let branches = self.normal.columns[HEAD..].iter().rev().zip(self.rule.influences()).zip(decays);
         let all = branches.map(|((column, (modulus, influence)), decay)| ([influence, decay], Some((column, modulus))));
         std::iter::once(([1.0; 2], None)).chain(all).map(move |(weights, branch)| {
             let strain = move |group: usize| {
@@ -182,32 +278,22 @@ impl GroupHistory {
     /// free group is a mean of them: so their greatest difference is never passed, nor is the sum of what each of
     /// them alone can raise ([`ExponentialRule::influences`]).
     pub(crate) fn differ_at_most(&self, a: usize, b: usize, most: f64) -> bool {
-        let [displacements, changes, _, stresses @ ..] = &self.columns[..] else { return true };
-        let difference = displacements[a] - displacements[b];
-        let (mut greatest, mut raised) = (0.0f64, 0.0);
-        let mut strains = stresses.iter().rev().zip(self.rule.influences());
-        difference.abs() <= most
-            && (changes[a] - changes[b]).abs() <= most
-            && strains.all(|(column, (modulus, influence))| {
-                let strain = (difference - (column[a] - column[b]) / modulus).abs();
-                greatest = greatest.max(strain);
-                raised += influence * strain;
-                greatest.min(raised) <= most
-            })
+        let mut pasts = std::iter::once(&self.normal).chain(&self.tangential);
+        pasts.all(|past| past.differs_at_most(&self.rule, [a, b], most))
     }
 
     /// Mixes a share of the past of group `b` into the past of group `a`.
     pub(crate) fn mix(&mut self, a: usize, b: usize, share: f64) {
-        self.columns.iter_mut().for_each(|column| column[a] += share * (column[b] - column[a]));
+        self.columns().for_each(|column| column[a] += share * (column[b] - column[a]));
     }
 
     /// Puts the past of one group in the place of another.
     pub(crate) fn copy_within(&mut self, from: usize, to: usize) {
-        self.columns.iter_mut().for_each(|column| column[to] = column[from]);
+        self.columns().for_each(|column| column[to] = column[from]);
     }
 
     /// Removes the pasts of all groups after the first few.
     pub(crate) fn truncate(&mut self, groups: usize) {
-        self.columns.iter_mut().for_each(|column| column.truncate(groups));
+        self.columns().for_each(|column| column.truncate(groups));
     }
 }

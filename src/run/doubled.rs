@@ -78,7 +78,7 @@ impl<C: Contact, J: Judge<C>> Doubled<C, J> {
         let history = course.histories.first();
         if self.record.tolerance > 0.0 && self.record.bends.is_none() {
             self.record.look(contact, history)?;
-            self.passage.reserve(self.record.bends.as_ref().map_or(0, Vec::len));
+            self.passage.reserve(self.record.bends.as_ref().map_or(0, Vec::len).max(self.record.bends_along.len()));
         }
         let rounded = self.rounded(contact, history);
         match course.given {
@@ -146,14 +146,23 @@ impl<C: Contact, J: Judge<C>> Doubled<C, J> {
         }
     }
 
-    /// Looks at the load within a step, which begins with one of this size: whether it is off a parabola.
+    /// Looks at the loads within a step, the normal one of which begins with this size: whether one is off a parabola.
     fn bends(&mut self, contact: &C, history: &dyn LoadHistory, span: Span, first: f64) -> Result<bool> {
-        let size_at = |time: f64| J::size(contact, history.checked_before(time, contact.attracts())?);
-        self.passage.look(span, first, self.record.bends.as_deref().unwrap_or_default(), size_at)?;
-        self.record.greatest_load = self.record.greatest_load.max(self.passage.top());
+        let Doubled { record, passage, .. } = self;
         // deviations below the least normal number are rounding
-        let straight = (BEND * self.record.greatest_load).max(f64::MIN_POSITIVE);
-        Ok(self.passage.bend(self.record.greatest_load) > straight)
+        let is_bent =
+            |passage: &Passage, greatest| passage.bend(greatest) > f64::max(BEND * greatest, f64::MIN_POSITIVE);
+        let along = contact.lateral().map(|along| {
+            let size_at = |time: f64| Ok(along.checked_before(time, true)?.main());
+            passage.look(span, along.checked_at(span.now, true)?.main(), &record.bends_along, size_at)?;
+            record.greatest_along = passage.top().abs().max(record.greatest_along);
+            Ok::<_, Error>(is_bent(passage, record.greatest_along))
+        });
+        let is_bent_along = along.transpose()?.unwrap_or(false);
+        let size_at = |time: f64| J::size(contact, history.checked_before(time, contact.attracts())?);
+        passage.look(span, first, record.bends.as_deref().unwrap_or_default(), size_at)?;
+        record.greatest_load = record.greatest_load.max(passage.top());
+        Ok(is_bent_along || is_bent(passage, record.greatest_load))
     }
 
     /// Takes a step whole and in two halves. Returns the report of the second.
@@ -188,7 +197,7 @@ fn unless_cancelled(flag: Option<&AtomicBool>) -> Result<()> {
 
 impl<C: Contact, J: Judge<C>> Control<C> for Doubled<C, J> {
     fn bears(&self, _: &C, loads: &[Load]) -> bool {
-        self.record.load.as_ref() == loads.first()
+        self.record.loads == loads
     }
 
     fn advance(&mut self, contact: &mut C, course: &Course<'_>) -> Result<StepReport> {
@@ -196,10 +205,15 @@ impl<C: Contact, J: Judge<C>> Control<C> for Doubled<C, J> {
         J::copy(&mut self.before, contact);
         let report = self.take_step(contact, course).inspect_err(|_| J::copy(contact, &self.before))?;
         self.halved = course.given.is_none();
-        self.record.load = Some(match course.given {
-            Some((_, &[load, ..])) => load,
-            _ => course.histories.first().checked_before(report.time, contact.attracts())?,
-        });
+        let (loads, attracts) = (&mut self.record.loads, contact.attracts());
+        loads.clear();
+        match course.given {
+            Some((_, given)) => loads.extend_from_slice(given),
+            None => {
+                loads.push(course.histories.first().checked_before(report.time, attracts)?);
+                loads.extend(contact.lateral().map(|along| along.checked_before(report.time, true)).transpose()?);
+            }
+        }
         if report.time >= course.corner {
             J::turn(contact);
         }

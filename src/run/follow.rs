@@ -210,7 +210,7 @@ impl<'a, C: Contact> Run<'a, C> {
         let covered = if progress.is_new() { progress.start.next_down() } else { covered_by(progress.now) };
         Run {
             contact,
-            loads: Vec::with_capacity(histories.count()),
+            loads: Vec::with_capacity(histories.count() + 1),
             histories,
             stepping,
             until,
@@ -344,6 +344,8 @@ impl<'a, C: Contact> Run<'a, C> {
         let (now, until) = (contact.time(), *until);
         let attracts = contact.attracts();
         histories.loads(loads, |history| history.checked_at(now, attracts))?;
+        // it may act in both directions
+        loads.extend(contact.lateral().map(|along| along.checked_at(now, true)).transpose()?);
         let jumps = !control.bears(contact, loads);
         if !jumps && now >= until {
             return Ok(None);
@@ -353,7 +355,7 @@ impl<'a, C: Contact> Run<'a, C> {
             contact.is_known_until(until)?;
             *known = true;
         }
-        let corner = if jumps { f64::INFINITY } else { histories.next_breakpoint(now)? };
+        let corner = if jumps { f64::INFINITY } else { histories.next_breakpoint(now, contact.lateral())? };
         let temperature = contact.temperature().and_then(|history| Some((history, history.next_corner(now)?)));
         let turn = temperature.map_or(f64::INFINITY, |(_, turn)| turn);
         let kink =
@@ -365,6 +367,7 @@ impl<'a, C: Contact> Run<'a, C> {
             Stepping::Fixed { dt } => {
                 let time = progress.next_time(now, dt, stop)?;
                 histories.loads(loads, |history| history.checked_before(time, attracts))?;
+                loads.extend(contact.lateral().map(|along| along.checked_before(time, true)).transpose()?);
                 Some(time)
             }
             Stepping::Adaptive { .. } => None,

@@ -48,9 +48,9 @@ impl<'a> Histories<'a> {
         })
     }
 
-    /// The first breakpoint of any after `now`; infinite if there is none.
-    pub(super) fn next_breakpoint(&self, now: f64) -> Result<f64> {
-        self.each().try_fold(f64::INFINITY, |first, history| {
+    /// The first breakpoint of any after `now`, those of what acts along the surface too; infinite if there is none.
+    pub(super) fn next_breakpoint(&self, now: f64, along: Option<&dyn LoadHistory>) -> Result<f64> {
+        self.each().chain(along).try_fold(f64::INFINITY, |first, history| {
             let next = history.next_breakpoint(now).unwrap_or(f64::INFINITY);
             if next <= now || next.is_nan() {
                 return Err(LoadError::InvalidBreakpoint { after: now, breakpoint: next }.into());

@@ -116,8 +116,8 @@ pub(crate) struct Tries<C> {
 #[derive(Debug, Clone, Default)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Record<J> {
-    /// The load that acts; unknown before the first step.
-    pub(super) load: Option<Load>,
+    /// The load that acts, and the one along the surface; unknown before the first step.
+    pub(super) loads: Vec<Load>,
     pub(crate) tolerance: f64,
     pub(crate) start: f64,
     pub(crate) until: f64,
@@ -133,6 +133,9 @@ pub(crate) struct Record<J> {
     /// Times at which the load of the run bends, unknown before it was looked at, and its maximum.
     pub(super) bends: Option<Vec<f64>>,
     pub(crate) greatest_load: f64,
+    /// The same of what acts along the surface.
+    pub(super) bends_along: Vec<f64>,
+    pub(super) greatest_along: f64,
     /// Loads below this one are lost in rounding.
     pub(crate) least_load: f64,
     /// Maximum error of an adaptive step.
@@ -145,11 +148,13 @@ impl<J> Record<J> {
     /// Whether a run can continue with these values; a damaged file may hold any.
     #[cfg(feature = "checkpoint")]
     pub(crate) fn fits(&self) -> bool {
-        let sizes = [self.next, self.greatest[0], self.greatest[1], self.greatest_load, self.least_load];
-        let times = self.bends.iter().flatten().copied();
+        let loads = [self.greatest_load, self.greatest_along, self.least_load];
+        let sizes = [&[self.next][..], &self.greatest, &loads].concat();
+        let times = self.bends.iter().flatten().chain(&self.bends_along).copied();
         sizes.iter().all(|&size| size >= 0.0)
             && times.chain([self.start, self.until, self.next, self.corner]).all(f64::is_finite)
             && self.bends.as_ref().is_none_or(|bends| bends.is_sorted())
+            && self.bends_along.is_sorted()
     }
 
     /// Looks at the load of the run, which fails where there is none. A load that the contact has no size for fails
@@ -170,6 +175,13 @@ impl<J> Record<J> {
         self.greatest_load = loads.iter().fold(0.0, |most, load| load.1.max(most));
         // of forces or of depths
         self.least_load = if forces != others { f64::EPSILON * self.greatest_load } else { 0.0 };
+        if let Some(along) = contact.lateral() {
+            let looks = looks(along, [contact.time(), self.until], true);
+            let pairs = looks.map(|look| look.map(|(time, [before, at])| [(time, before.main()), (time, at.main())]));
+            let seen = pairs.collect::<Result<Vec<_>>>()?.concat();
+            (self.bends_along, self.greatest_along) =
+                (bends(&seen), seen.iter().fold(0.0, |most, (_, load)| load.abs().max(most)));
+        }
         J::look(self, &loads);
         Ok(())
     }

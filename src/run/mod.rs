@@ -250,6 +250,12 @@ pub trait Contact: Clone + Debug + Send + Sync + 'static {
         None
     }
 
+    /// What acts along the surface besides the load.
+    #[doc(hidden)]
+    fn lateral(&self) -> Option<&dyn LoadHistory> {
+        None
+    }
+
     /// The approach at which the upright bodies touch \[m\], if they never have.
     #[doc(hidden)]
     fn untouched(&self) -> Option<f64> {

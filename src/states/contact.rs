@@ -12,6 +12,7 @@ use crate::rheology::{Material, TemperatureHistory};
 use crate::solver::RigidMotion;
 use crate::states::curve::ElasticStates;
 use crate::states::elastic::state_under;
+use crate::states::friction::Friction;
 use crate::states::levels::{Demand, Levels, Wanted};
 
 /// A contact of one material on the [`ElasticStates`] of its surface, advanced step by step like a
@@ -48,6 +49,8 @@ pub(super) struct Scene {
     pub(super) interpolant: Interpolant,
     /// Error by which groups of levels merge.
     merge_error: f64,
+    pub(super) material: Material,
+    pub(super) friction: Option<Friction>,
 }
 
 /// Error by which groups of levels merge, unless another is set.
@@ -67,7 +70,8 @@ impl StatesContact {
         let creep = material.spectrum_for("a contact on elastic states")?;
         let (states, limits, interpolant) = (Arc::clone(states), Limits::of(material), Interpolant::CorrectedLinear);
         let (swept, merge_error) = (Arc::clone(&states), MERGE_ERROR);
-        let scene = Scene { swept, elastic: None, temperature: None, limits, interpolant, merge_error };
+        let (elastic, temperature, material, friction) = (None, None, material.clone(), None);
+        let scene = Scene { swept, elastic, temperature, limits, interpolant, merge_error, material, friction };
         let levels = Levels::new(ExponentialRule::new(&creep));
         Ok(StatesContact {
             scene: Arc::new(scene),
@@ -198,15 +202,22 @@ impl StatesContact {
 
     /// Advances by `dt` to `time`.
     pub(crate) fn step_to(&mut self, time: f64, dt: f64, load: Load) -> Result<StepReport> {
-        let report = self.advance(time, dt, load)?;
+        self.step_along(time, dt, load, None)
+    }
+
+    /// [`StatesContact::step_to`] along the surface to a load of its own, else to that of its history.
+    pub(super) fn step_along(&mut self, time: f64, dt: f64, load: Load, along: Option<Load>) -> Result<StepReport> {
+        let report = self.advance(time, dt, load, along)?;
         self.levels.merge(&self.states, self.scene.merge_error);
         Ok(report)
     }
 
     /// [`StatesContact::step_to`] without merging.
-    pub(super) fn advance(&mut self, time: f64, dt: f64, load: Load) -> Result<StepReport> {
+    pub(super) fn advance(&mut self, time: f64, dt: f64, load: Load, along: Option<Load>) -> Result<StepReport> {
         let (demand, wanted, reduced) = self.predict(time, dt, load)?;
-        self.levels.accept(&self.states, demand, wanted);
+        let along = self.along(time, dt, along)?;
+        along.map_or(Ok(()), |along| self.levels.check_shear(time, along, wanted))?;
+        self.levels.accept(&self.states, demand, wanted, along);
         (self.time, self.reduced_time) = (time, reduced);
         self.prescribed = if let Load::Approach { approach, .. } = load { Some(approach) } else { None };
         if self.groups() == 0 {

@@ -98,7 +98,7 @@ impl Judge<StatesContact> for OnLevels {
     }
 
     fn take(contact: &mut StatesContact, time: f64, load: Load) -> Result<StepReport> {
-        contact.advance(time, time - contact.time(), load)
+        contact.advance(time, time - contact.time(), load, None)
     }
 
     fn accept(record: &Record<OnLevels>, contact: &mut StatesContact) {
@@ -194,6 +194,11 @@ impl Judge<StatesContact> for OnLevels {
         see(of_surface, greatest);
         if whole.level() > 0.0 || halves.level() > 0.0 {
             see([0, 1].map(|k| ended[0][k] - ended[1][k]), scales);
+        }
+        if let (Some(one), Some(two)) = (&whole.levels.shear, &halves.levels.shear) {
+            let ends = [one, two].map(|shear| [shear.displacement(), shear.force]);
+            let scales = [0, 1].map(|k| ends[1][k].abs().max(SMALL * two.greatest[k]));
+            see([0, 1].map(|k| ends[0][k] - ends[1][k]), scales);
         }
         // what steps like this one add since the last corner, and nothing brings back, may be as large as the
         // tolerance: to the depth under a spring, and to the surface of bodies apart that resist rates alone

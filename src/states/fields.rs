@@ -1,11 +1,10 @@
 //! Fields of a contact on elastic states.
 
-use crate::error::{Result, StatesError, within};
+use crate::error::{Result, within};
 use crate::fields::KeptFields;
 use crate::load::Load;
 use crate::states::contact::StatesContact;
 use crate::states::contacts::{Contacts, Solved, Superposition};
-use crate::states::curve::ElasticStates;
 use crate::states::profile::Profile;
 
 impl StatesContact {
@@ -16,19 +15,7 @@ impl StatesContact {
     /// # Errors
     /// [`StatesError::NoPressures`] if none were kept.
     pub fn pressure(&self) -> Result<Vec<f64>> {
-        let states = self.states();
-        let grid = states.grid.as_ref().filter(|_| !states.pressures.is_empty()).ok_or(StatesError::NoPressures)?;
-        // Σ w (p_e(l_i) − p_e(l_i−1)) by the share of each state in it
-        let mut shares = vec![0.0; states.pressures.len()];
-        let mut last = 0.0;
-        for (top, traction) in self.tractions() {
-            states.share(top, traction, &mut shares);
-            states.share(last, -traction, &mut shares);
-            last = top;
-        }
-        let mut field = vec![0.0; grid.len()];
-        states.pressures.iter().zip(shares).for_each(|(pressed, share)| pressed.add_to(share, &mut field));
-        Ok(field)
+        self.states.superposed_field(self.tractions())
     }
 
     /// All fields to an `accuracy`, the error of the pressure in L1 over the force: from elastic contacts at a few
@@ -68,18 +55,5 @@ impl StatesContact {
         }
         motion.approach -= self.levels.lift;
         Ok(elastic.keep_with(pressure, displacement, motion, self.time()))
-    }
-}
-
-impl ElasticStates {
-    /// Adds the shares of the states in `weight` times the pressure at a level.
-    fn share(&self, level: f64, weight: f64, shares: &mut [f64]) {
-        let upper = self.states.partition_point(|state| state.level < level).min(self.states.len() - 1);
-        let [below, above] = [upper.checked_sub(1).map_or(0.0, |k| self.states[k].level), self.states[upper].level];
-        let share = (level - below) / (above - below);
-        shares[upper] += weight * share;
-        if upper > 0 {
-            shares[upper - 1] += weight * (1.0 - share);
-        }
     }
 }

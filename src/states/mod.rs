@@ -46,6 +46,7 @@ mod control;
 mod curve;
 mod elastic;
 mod fields;
+mod friction;
 mod levels;
 mod outside;
 mod pressed;
@@ -58,11 +59,13 @@ mod run_fields;
 #[cfg(feature = "checkpoint")]
 mod saved;
 mod solved_curve;
+mod superposed;
 mod sweep;
 
 pub use crate::error::StatesError;
 pub use contact::StatesContact;
 pub use curve::{ElasticState, ElasticStates};
+pub use friction::LateralWork;
 #[cfg(feature = "npy")]
 pub(crate) use pressed::Pressed;
 pub use reach::Reach;

@@ -2,7 +2,7 @@
 
 use crate::contact::StepReport;
 use crate::error::Result;
-use crate::load::Load;
+use crate::load::{Load, LoadHistory};
 use crate::rheology::TemperatureHistory;
 use crate::run::control::Control;
 use crate::run::doubled::Doubled;
@@ -71,6 +71,10 @@ impl Contact for StatesContact {
 
     fn temperature(&self) -> Option<&TemperatureHistory> {
         self.scene.temperature.as_ref()
+    }
+
+    fn lateral(&self) -> Option<&dyn LoadHistory> {
+        self.lateral_history()
     }
 
     fn untouched(&self) -> Option<f64> {

@@ -94,7 +94,7 @@ impl StatesContact {
     }
 
     /// What tells its scene from others.
-    fn parts(&self) -> [(&'static str, Vec<f64>); 5] {
+    fn parts(&self) -> [(&'static str, Vec<f64>); 6] {
         let ElasticStates { states, rest, tilt, .. } = &*self.scene.swept;
         [
             ("kind of contact", of_text(&"on elastic states")),
@@ -102,6 +102,7 @@ impl StatesContact {
             ("time rule", of_text(&self.scene.interpolant)),
             ("material", of_rule(self.levels.history.rule())),
             ("temperature", of_text(&self.scene.temperature)),
+            ("friction", of_text(&self.scene.friction.as_ref().map(|friction| friction.numbers()))),
         ]
     }
 }

@@ -52,7 +52,8 @@ impl Levels {
                     self.history.mix(kept - 1, k, share);
                     let into = &mut self.groups[kept - 1];
                     let traction = into.traction + share * (group.traction - into.traction);
-                    *into = Group { traction, ..group };
+                    let shear = into.shear + share * (group.shear - into.shear);
+                    *into = Group { traction, shear, ..group };
                     continue;
                 }
             }

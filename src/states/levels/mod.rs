@@ -3,10 +3,12 @@
 mod distance;
 mod edge;
 mod merging;
+mod shear;
 
 use crate::error::{Error, Result, StatesError, StepError};
 use crate::hereditary::{ExponentialRule, GroupHistory, Interpolant};
 use crate::states::curve::{ElasticStates, Motions};
+pub(super) use crate::states::levels::shear::Shear;
 
 /// Rounding of a displacement between 0 and 1, and of levels that are one.
 const ROUNDING: f64 = 1e-9;
@@ -45,6 +47,10 @@ struct Group {
     motions: Motions,
     /// w at the end of the last step \[Pa\]: 0 where the group is free.
     traction: f64,
+    /// θ, along the surface, over the coefficient of friction.
+    shear: f64,
+    /// ∫ δ dl below its top \[m³\]; 0 without friction.
+    work: f64,
 }
 
 /// Groups by ascending levels, their past, and the state that they make.
@@ -67,6 +73,8 @@ pub(super) struct Levels {
     pub(super) motions: Motions,
     /// How far bodies of given approach are apart \[m\].
     pub(super) lift: f64,
+    /// What happens along the surface, if there is friction.
+    pub(super) shear: Option<Shear>,
 }
 
 /// With room for as many groups as another has.
@@ -90,6 +98,7 @@ impl Levels {
             force: 0.0,
             motions: Motions::default(),
             lift: 0.0,
+            shear: None,
         }
     }
 
@@ -100,6 +109,7 @@ impl Levels {
         self.trial.clone_from(&other.trial);
         (self.merge_from, self.passed) = (other.merge_from, other.passed);
         (self.level, self.force, self.motions, self.lift) = (other.level, other.force, other.motions, other.lift);
+        self.shear.clone_from(&other.shear);
     }
 
     /// Whether these may be levels of the contact of `other`; a damaged file may hold any.
@@ -107,7 +117,11 @@ impl Levels {
     pub(super) fn fits(&self, other: &Levels) -> bool {
         let (tops, numbers) = (|| self.groups.iter().map(|group| group.top), [self.level, self.force, self.lift]);
         let is_finite = tops().chain(numbers).chain(self.passed).all(f64::is_finite);
-        self.history.fits(&other.history, self.groups.len()) && is_finite && tops().is_sorted()
+        let is_sheared = match &self.shear {
+            Some(shear) => other.shear.is_some() && shear.fits(),
+            None => other.shear.is_none(),
+        };
+        self.history.fits(&other.history, self.groups.len()) && is_finite && tops().is_sorted() && is_sheared
     }
 
     /// How many times stiffer the body is at once than over the step predicted last; 1 without elastic response,
@@ -150,6 +164,7 @@ impl Levels {
         demand: Demand,
     ) -> Result<Wanted> {
         let is_between = self.history.predict(dt, interpolant, &mut self.trial);
+        self.predict_shear();
         let compliance = self.history.rule().compliance();
         if compliance == 0.0 {
             let what = "a jump of the load that changes the pressure";
@@ -166,11 +181,10 @@ impl Levels {
             let lead = if plain.level > self.level { self.lead() } else { 0.0 };
             let led = if lead > 0.0 { self.level_of(states, demand, lead) } else { plain };
             // levels that would pull: the edge has slowed down by more than a quadratic describes
-            if lead == 0.0 || lead <= self.swept(led.level) {
-                break led;
-            }
-            if !self.history.reduce_order(&mut self.trial) {
-                break plain;
+            let is_led = lead == 0.0 || lead <= self.swept(led.level);
+            let wanted = if is_led { led } else { plain };
+            if is_led && self.sticks_to(wanted.level).is_ok() || !self.reduce_order() {
+                break wanted;
             }
             has_order = false;
         };
@@ -178,6 +192,7 @@ impl Levels {
             self.check_order(time)?;
         }
         let level = wanted.level;
+        self.sticks_to(level).map_err(|share| StatesError::BeyondFriction { time, share })?;
         if level.is_nan() {
             return Err(Error::Step(StepError::Overflow { time, what: "the level" }));
         }
@@ -199,6 +214,13 @@ impl Levels {
             return Err(StatesError::Below { time, level, first: states.first_level() }.into());
         }
         Ok(wanted)
+    }
+
+    /// Weighs the step predicted last with less degree, if it has any.
+    fn reduce_order(&mut self) -> bool {
+        let is_reduced = self.history.reduce_order(&mut self.trial);
+        self.predict_shear();
+        is_reduced
     }
 
     /// The level after a jump of a body without elastic response, which moves no surface: the present level if the
@@ -224,8 +246,14 @@ impl Levels {
         }
     }
 
-    /// Accepts the step of [`Levels::wanted`].
-    pub(super) fn accept(&mut self, states: &ElasticStates, demand: Demand, Wanted { level, lead, .. }: Wanted) {
+    /// Accepts the step of [`Levels::wanted`], to a demand along the surface where there is friction.
+    pub(super) fn accept(
+        &mut self,
+        states: &ElasticStates,
+        demand: Demand,
+        Wanted { level, lead, .. }: Wanted,
+        along: Option<Demand>,
+    ) {
         if self.history.rule().compliance() > 0.0 {
             let edge = self.level;
             let swept = if self.history.leads() { self.swept(level) } else { 0.0 };
@@ -234,9 +262,13 @@ impl Levels {
                 self.lead_groups(self.groups_to(edge)..self.groups_to(level), lead, swept);
             }
             self.hold(level);
+            let stick = along.map_or(0, |along| self.shear_to(states, along, edge, [lead, swept]));
+            let sheared = self.shear.as_ref().map_or(&[][..], Shear::displacements);
+            self.history.commit(&self.trial, sheared, stick);
             self.passed = self.history.differences_after(self.passed, swept);
         } else if level == 0.0 {
             self.release();
+            self.release_shear(along);
         }
         match demand {
             Demand::Depth { depth, .. } if level == 0.0 => {
@@ -269,14 +301,22 @@ impl Levels {
         if is_near(self.bottom(group).0) || self.groups.get(group).is_some_and(|group| is_near(group.top)) {
             return;
         }
-        if group == self.groups.len() {
-            self.history.push();
-            self.trial.push(0.0);
-        } else {
+        let work = self.shear.as_ref().map_or(0.0, |_| {
+            let below = group.checked_sub(1).map(|k| self.groups[k]);
+            let (bottom, work) = below.map_or((0.0, 0.0), |below| (below.top, below.work));
+            work + states.work(bottom, level)
+        });
+        let split = self.groups.get(group).copied();
+        if split.is_some() {
             self.history.split(group);
             self.trial.insert(group, self.trial[group]);
+        } else {
+            self.history.push();
+            self.trial.push(0.0);
         }
-        self.groups.insert(group, Group { top: level, motions: states.motions(level), traction: 0.0 });
+        self.shear.iter_mut().for_each(|shear| shear.cut(group));
+        let (traction, shear) = split.map_or((0.0, 0.0), |split| (split.traction, split.shear));
+        self.groups.insert(group, Group { top: level, motions: states.motions(level), traction, shear, work });
     }
 
     /// Releases all groups where they are; takes no step. As after any jump, the past does not determine how they
@@ -288,7 +328,7 @@ impl Levels {
         (self.level, self.force, self.lift) = (0.0, 0.0, 0.0);
     }
 
-    /// Holds the groups up to a level, and commits the step.
+    /// Holds the groups up to a level.
     fn hold(&mut self, level: f64) {
         let stiffness = 1.0 / self.history.rule().compliance();
         self.level = level;
@@ -301,7 +341,6 @@ impl Levels {
             motions.add(*displacement, lower, group.motions);
             (bottom, lower) = (group.top, group.motions);
         }
-        self.history.commit(&self.trial);
         (self.force, self.motions, self.lift) = (force, motions, 0.0);
     }
 

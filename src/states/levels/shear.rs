@@ -1,0 +1,333 @@
+//! Friction: what groups of levels do along the surface.
+//!
+//! Where bodies respond alike to normal and tangential loads, the traction along the surface is a sum of the same
+//! elastic states as the pressure, with a second share for each level: τ = ∫ θ q dl, of which the body moves by
+//! ∫ U dδ, U = C∗dθ. Levels below one s stick, so that their U stays; those between s and the edge slip, θ = ± f w;
+//! free ones carry nothing. A step slips from the edge inwards until its demand is met. Levels that are met in a step
+//! take one part of f w before any slips: none of them was in contact for longer than another carries more.
+//!
+//! θ, U and what they make are divided by the coefficient of friction here.
+
+use std::ops::Range;
+
+use crate::error::{Result, StatesError, StepError};
+use crate::states::curve::ElasticStates;
+use crate::states::levels::{Demand, GROUPS, Group, Levels, ROUNDING, Wanted};
+
+/// Sums of as many terms as there are groups are rounded by about this part of them.
+const ROUNDED: f64 = 64.0 * f64::EPSILON;
+
+/// What happens along the surface.
+#[derive(Debug, Default)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+pub(in crate::states) struct Shear {
+    /// Whether levels that are met slip from the start of the step on, as if they had been in contact.
+    whole: bool,
+    /// U of each group if nothing shears it any more, then at the end of the step.
+    trial: Vec<f64>,
+    /// θ of each group at the end of the step.
+    tractions: Vec<f64>,
+    /// ∫ θ dl \[N\].
+    pub(in crate::states) force: f64,
+    /// ∫ U dδ \[m\].
+    pub(in crate::states) motion: f64,
+    /// How far the whole contact has slid \[m\].
+    pub(in crate::states) slid: f64,
+    /// Level up to which the contact sticks \[m²\].
+    pub(in crate::states) stick: f64,
+    /// Maximum of |motion| and of |force| so far.
+    pub(in crate::states) greatest: [f64; 2],
+    /// Work that the body has done along the surface, and the part of it that slip has dissipated \[J\].
+    pub(in crate::states) work: f64,
+    pub(in crate::states) lost: f64,
+}
+
+clone_by_fields! { Shear { whole, trial, tractions, force, motion, slid, stick, greatest, work, lost } }
+
+impl Shear {
+    #[cfg(feature = "checkpoint")]
+    pub(super) fn fits(&self) -> bool {
+        let Shear { force, motion, slid, stick, greatest: [far, most], work, lost, .. } = self;
+        [force, motion, slid, work, lost].iter().all(|value| value.is_finite())
+            && [stick, far, most].iter().all(|value| value.is_finite() && **value >= 0.0)
+    }
+
+    /// Of the body: that of the contact, and how far it has slid.
+    pub(in crate::states) fn displacement(&self) -> f64 {
+        self.motion + self.slid
+    }
+
+    /// U of each group at the end of the step.
+    pub(super) fn displacements(&self) -> &[f64] {
+        &self.trial
+    }
+
+    /// Splits a group, or adds one after the others.
+    pub(super) fn cut(&mut self, group: usize) {
+        for column in [&mut self.trial, &mut self.tractions] {
+            column.insert(group, column.get(group).copied().unwrap_or_default());
+        }
+    }
+}
+
+/// What is prescribed along the surface: the sum of ∫ θ dl and ∫ U dδ with these weights.
+#[derive(Debug, Clone, Copy)]
+struct Wish {
+    weights: [f64; 2],
+    sum: f64,
+}
+
+impl Wish {
+    fn new(demand: Demand) -> Wish {
+        match demand {
+            Demand::Force(force) => Wish { weights: [1.0, 0.0], sum: force },
+            Demand::Depth { depth, give } => Wish { weights: [give, 1.0], sum: depth },
+        }
+    }
+
+    /// What a group of these widths, in level and depth, has of it.
+    fn of(&self, [level, depth]: [f64; 2], traction: f64, displacement: f64) -> f64 {
+        self.weights[0] * level * traction + self.weights[1] * depth * displacement
+    }
+}
+
+/// What a step does to the groups that it holds: the first ones `stick`, those `met` share a part of what they could
+/// carry, those between slip. What is `left` of the wish moves the whole contact.
+#[derive(Debug)]
+struct Outcome {
+    stick: usize,
+    met: Range<usize>,
+    share: f64,
+    sense: f64,
+    left: f64,
+}
+
+/// Width of a group in level and depth.
+fn widths(groups: &[Group], k: usize) -> [f64; 2] {
+    let (bottom, lower) = k.checked_sub(1).map_or((0.0, 0.0), |k| (groups[k].top, groups[k].motions.depth));
+    [groups[k].top - bottom, groups[k].motions.depth - lower]
+}
+
+impl Levels {
+    /// With friction; nothing has acted along the surface yet.
+    pub(in crate::states) fn with_shear(&mut self, states: &ElasticStates) {
+        self.history.shear(GROUPS);
+        self.shear = Some(Shear { stick: self.level, ..Shear::default() });
+        let (mut bottom, mut work) = (0.0, 0.0);
+        for group in &mut self.groups {
+            work += states.work(bottom, group.top);
+            (bottom, group.work) = (group.top, work);
+        }
+    }
+
+    /// Lets levels that are met slip from the start of the step on.
+    pub(in crate::states) fn slip_from_start(&mut self) {
+        self.shear.iter_mut().for_each(|shear| shear.whole = true);
+    }
+
+    /// The top of each group, and θ over the coefficient of friction.
+    pub(in crate::states) fn shears(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
+        self.groups.iter().map(|group| (group.top, group.shear))
+    }
+
+    /// ½ Σ ∫∫ a(l) a(l′) κ(max(l, l′)) dl dl′, the energy of springs, with κ = dδ/dl and a = √E∞ U and q_i/√E_i.
+    pub(in crate::states) fn stored_along(&self) -> f64 {
+        let Some((now, stresses)) = self.history.sheared() else { return 0.0 };
+        let of = |a: &[f64]| {
+            let (mut below, mut sum) = (0.0, 0.0);
+            for (k, a) in a.iter().enumerate() {
+                let (bottom, [width, depth]) = (k.checked_sub(1).map(|k| self.groups[k]), widths(&self.groups, k));
+                let work = self.groups[k].work - bottom.map_or(0.0, |bottom| bottom.work);
+                sum += a * (below * depth + a * (self.groups[k].motions.depth * width - work));
+                below += a * width;
+            }
+            sum
+        };
+        self.history.rule().equilibrium() * of(now) + stresses.map(|(modulus, q)| of(q) / modulus).sum::<f64>()
+    }
+
+    pub(super) fn predict_shear(&mut self) {
+        let Levels { history, shear: Some(shear), .. } = self else { return };
+        history.predict_shear(&mut shear.trial);
+    }
+
+    /// Whether all levels up to one that were held can stick, |θ| ≤ w, so that those that slip are the ones at the
+    /// edge. If not, the maximum of |θ| over w.
+    pub(super) fn sticks_to(&self, level: f64) -> Result<(), f64> {
+        let (Some((now, _)), Some(shear)) = (self.history.sheared(), &self.shear) else { return Ok(()) };
+        let held = self.groups.partition_point(|group| group.top < self.level.min(level) * (1.0 - ROUNDING)) + 1;
+        let over = |k: usize| {
+            let (holds, presses) = ((now[k] - shear.trial[k]).abs(), 1.0 - self.trial[k]);
+            if holds > presses + ROUNDING { holds / presses.max(ROUNDING) } else { 0.0 }
+        };
+        let worst = (0..held.min(self.groups.len())).map(over).fold(0.0, f64::max);
+        if worst > 0.0 && level > 0.0 { Err(worst) } else { Ok(()) }
+    }
+
+    /// Fails where a demand along the surface cannot be met at the end of a step: a force beyond friction, or a jump
+    /// of a body without elastic response.
+    pub(in crate::states) fn check_shear(
+        &self,
+        time: f64,
+        along: Demand,
+        Wanted { level, lead, .. }: Wanted,
+    ) -> Result<()> {
+        let Some(shear) = &self.shear else { return Ok(()) };
+        let (compliance, Wish { weights, sum }) = (self.history.rule().compliance(), Wish::new(along));
+        if compliance == 0.0 && level > 0.0 {
+            let parts = [weights[0] * shear.force, weights[1] * shear.displacement()];
+            let size = parts[0].abs() + parts[1].abs() + sum.abs();
+            let what = "a jump of the load along the surface";
+            let is_met = (parts[0] + parts[1] - sum).abs() <= ROUNDING * size;
+            return if is_met { Ok(()) } else { Err(StepError::NoElasticResponse { time, what }.into()) };
+        }
+        let Demand::Force(force) = along else { return Ok(()) };
+        let carried =
+            |(bottom, _, group, free): (f64, _, &Group, f64)| (1.0 - free) * (group.top.min(level) - bottom).max(0.0);
+        let beyond = (level - self.bottom(self.groups.len()).0).max(0.0);
+        let carried = self.spans().map(carried).sum::<f64>() + beyond - lead;
+        let limit = if level > 0.0 { carried / compliance } else { 0.0 };
+        if force.abs() > limit * (1.0 + ROUNDING) {
+            return Err(StatesError::Slides { time, over_limit: force.abs() / limit }.into());
+        }
+        Ok(())
+    }
+
+    /// Shears the groups that a step holds to a demand. Those that were held stick, those that were met share what is
+    /// needed, then the held ones slip from the edge inwards. Returns how many stick.
+    pub(super) fn shear_to(&mut self, states: &ElasticStates, along: Demand, edge: f64, lead: [f64; 2]) -> usize {
+        let held = self.held();
+        let met =
+            if self.shear.as_ref().is_some_and(|shear| shear.whole) { held } else { self.groups_to(edge).min(held) };
+        let (wish, met) = (Wish::new(along), met..held);
+        let needed = self.stick_and_need(wish, met.start);
+        let (sense, part) = (if needed < 0.0 { -1.0 } else { 1.0 }, self.part_of_met(wish, met.clone(), needed, lead));
+        let share = sense * part.min(1.0);
+        let Some(shear) = &mut self.shear else { return 0 };
+        met.clone().for_each(|k| shear.tractions[k] = share * self.groups[k].traction);
+        let left = if part < 1.0 { 0.0 } else { needed - needed / part };
+        let mut outcome = Outcome { stick: met.start, met, share, sense, left };
+        self.slip(states, wish, &mut outcome);
+        self.commit_shear(along, &outcome, lead)
+    }
+
+    /// Lets the groups that were held stick, and nothing act on the others. Returns what is lacking of a wish.
+    fn stick_and_need(&mut self, wish: Wish, stick: usize) -> f64 {
+        let Levels { history, groups, shear: Some(shear), .. } = self else { return 0.0 };
+        let compliance = history.rule().compliance();
+        shear.tractions.clear();
+        shear.tractions.resize(groups.len(), 0.0);
+        let slid = wish.weights[1] * shear.slid;
+        let (mut needed, mut size) = (wish.sum - slid, wish.sum.abs() + slid.abs());
+        for (k, traction) in shear.tractions.iter_mut().enumerate() {
+            let stuck = history.sheared().filter(|_| k < stick).map(|(now, _)| now[k]);
+            *traction = stuck.map_or(0.0, |now| (now - shear.trial[k]) / compliance);
+            let has = wish.of(widths(groups, k), *traction, stuck.unwrap_or(shear.trial[k]));
+            (needed, size) = (needed - has, size + has.abs());
+        }
+        if needed.abs() <= ROUNDED * size { 0.0 } else { needed }
+    }
+
+    /// What is needed over what the groups that were met add if they slip; infinite without any.
+    fn part_of_met(&self, wish: Wish, met: Range<usize>, needed: f64, lead: [f64; 2]) -> f64 {
+        let compliance = self.history.rule().compliance();
+        let room = |k: usize| {
+            let traction = self.groups[k].traction;
+            wish.of(widths(&self.groups, k), traction, compliance * traction + self.led(k, lead) * lead[0])
+        };
+        let all = met.map(room).sum::<f64>();
+        if needed == 0.0 {
+            0.0
+        } else if all > 0.0 {
+            needed.abs() / all
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    /// The part of the lead of the edge that a group that was met has.
+    fn led(&self, k: usize, [lead, swept]: [f64; 2]) -> f64 {
+        if lead > 0.0 { (1.0 - self.history.displacements()[k]) / swept } else { 0.0 }
+    }
+
+    /// Lets groups that were held slip, from the edge inwards, until nothing is left of a wish; cuts the last one.
+    fn slip(&mut self, states: &ElasticStates, wish: Wish, outcome: &mut Outcome) {
+        let compliance = self.history.rule().compliance();
+        while outcome.left != 0.0 && outcome.stick > 0 {
+            let Some(shear) = &mut self.shear else { return };
+            let k = outcome.stick - 1;
+            let more = outcome.sense * self.groups[k].traction - shear.tractions[k];
+            let gain = wish.of(widths(&self.groups, k), more, compliance * more);
+            if outcome.sense * gain < outcome.sense * outcome.left {
+                shear.tractions[k] += more;
+                (outcome.stick, outcome.left) = (k, outcome.left - gain);
+                continue;
+            }
+            // where the weighted sum of level and depth is this much less than at the top
+            let (Group { top, motions, .. }, [a, b]) =
+                (self.groups[k], [wish.weights[0], wish.weights[1] * compliance]);
+            let sum = a * top + b * motions.depth - outcome.left / more;
+            let level = if b == 0.0 { sum / a } else { states.level_where(a / b, sum / b) };
+            let (level, before) = (level.min(top).max(self.bottom(k).0), self.groups.len());
+            self.cut_at(states, level);
+            let (added, stick) = (self.groups.len() - before, self.groups_to(level));
+            outcome.met = outcome.met.start + added..outcome.met.end + added;
+            (outcome.stick, outcome.left) = (stick, 0.0);
+            let Some(shear) = &mut self.shear else { return };
+            (stick..k + 1 + added).for_each(|k| shear.tractions[k] = outcome.sense * self.groups[k].traction);
+        }
+    }
+
+    /// Moves the groups by their tractions, and takes in what the step has done. Returns how many groups stick.
+    fn commit_shear(&mut self, along: Demand, outcome: &Outcome, lead: [f64; 2]) -> usize {
+        let Outcome { stick, ref met, share, left, .. } = *outcome;
+        let compliance = self.history.rule().compliance();
+        for k in met.clone().filter(|_| lead[0] > 0.0) {
+            let led = share * self.led(k, lead);
+            self.history.lead_shear(k, led, self.passed);
+            self.shear.iter_mut().for_each(|shear| shear.trial[k] += led * lead[0]);
+        }
+        let Levels { history, groups, shear: Some(shear), .. } = self else { return 0 };
+        let Some((now, _)) = history.sheared() else { return 0 };
+        let before = [shear.force, shear.displacement()];
+        let (mut force, mut motion, mut lost) = (0.0, 0.0, 0.0);
+        // of the levels above, ∫ θ dl and ∫ θ dδ, both in the mean of the step
+        let mut above = [0.0; 2];
+        for k in (0..groups.len()).rev() {
+            let (bottom, [width, depth]) = (k.checked_sub(1).map(|k| groups[k]), widths(groups, k));
+            let traction = shear.tractions[k];
+            shear.trial[k] = if k < stick { now[k] } else { shear.trial[k] + compliance * traction };
+            let (mean, change) = (0.5 * (groups[k].shear + traction), shear.trial[k] - now[k]);
+            let work = groups[k].work - bottom.map_or(0.0, |bottom| bottom.work);
+            let ends = groups[k].motions.depth + bottom.map_or(0.0, |bottom| bottom.motions.depth);
+            // ∫ ΔU (κ(l′) − κ(l)) θ dl dl′ over l > l′ with κ = dδ/dl: what slips below a level slips there
+            lost += change * (above[0] * depth - above[1] * width + mean * (2.0 * work - ends * width));
+            above = [above[0] + mean * width, above[1] + mean * depth];
+            (force, motion) = (force + traction * width, motion + shear.trial[k] * depth);
+            groups[k].shear = traction;
+        }
+        if let Demand::Force(wanted) = along {
+            force = wanted;
+        } else {
+            shear.slid += left;
+        }
+        (shear.force, shear.motion) = (force, motion);
+        let mean = 0.5 * (before[0] + force);
+        shear.work += mean * (shear.displacement() - before[1]);
+        shear.lost += lost + if let Demand::Force(_) = along { 0.0 } else { mean * left };
+        shear.greatest = [shear.greatest[0].max(shear.displacement().abs()), shear.greatest[1].max(force.abs())];
+        let stick = if share.abs() < 1.0 && stick == met.start { met.end } else { stick };
+        shear.stick = stick.checked_sub(1).map_or(0.0, |k| groups[k].top);
+        stick
+    }
+
+    /// Releases all groups in a jump of a body without elastic response.
+    pub(super) fn release_shear(&mut self, along: Option<Demand>) {
+        let (Some(shear), Some(along)) = (&mut self.shear, along) else { return };
+        self.groups.iter_mut().for_each(|group| group.shear = 0.0);
+        (shear.force, shear.stick) = (0.0, 0.0);
+        if let Demand::Depth { depth, .. } = along {
+            shear.slid = depth - shear.motion;
+        }
+    }
+}

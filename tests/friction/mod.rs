@@ -1,0 +1,5 @@
+//! Friction on elastic states.
+
+mod bodies;
+mod dense;
+mod steps;

@@ -1,0 +1,116 @@
+//! Steps against closed forms and tables, and one kind of load against another.
+
+use viscocontact::prelude::*;
+use viscocontact::states::{ElasticStates, StatesContact};
+
+use super::bodies::Relaxation;
+use super::dense::{material, relaxation};
+use crate::common::draws::Draws;
+
+/// A ball with δ = l^(2/3), on two bodies of ν = 0.
+fn ball(relaxation: &Relaxation, friction: f64) -> StatesContact {
+    // l = 4/3 a³/R, δ = a²/R: δ = l^(2/3) of R = 9/16
+    let states = ElasticStates::sphere(0.5625).unwrap();
+    StatesContact::new(&states, &material(relaxation)).unwrap().with_friction(friction).unwrap()
+}
+
+/// C = 4 − 3 e^(−t/4): E = 1/4 + 3/4 e^(−t).
+fn zener() -> Relaxation {
+    Relaxation { equilibrium: 0.25, terms: vec![(0.75, 1.0)] }
+}
+
+#[test]
+fn a_force_held_along_a_contact_that_grows() {
+    // pressed and sheared at once, and held
+    let mut contact = ball(&zener(), 0.4);
+    let run = |contact: &mut StatesContact, ramp: bool, until: f64| {
+        let steps = 4000;
+        for step in 0..=steps {
+            let time = until * f64::from(step) / f64::from(steps);
+            let part = if ramp { time.min(1.0) } else { 1.0 };
+            let dt = if step == 0 { 0.0 } else { until / f64::from(steps) };
+            contact.step_sheared(dt, Load::force(part), Load::force(0.2 * part)).unwrap();
+        }
+    };
+    run(&mut contact, false, 3.0);
+    for (value, expected) in
+        [(contact.level(), 2.582900), (contact.stick_level(), 2.582900), (contact.lateral_displacement(), 0.376503)]
+    {
+        assert!((value - expected).abs() < 2e-6, "{value}, {expected}");
+    }
+    let mut contact = ball(&zener(), 0.4);
+    run(&mut contact, true, 4.0);
+    for (value, expected) in
+        [(contact.level(), 2.746155), (contact.stick_level(), 2.746155), (contact.lateral_displacement(), 0.392205)]
+    {
+        assert!((value - expected).abs() < 2e-6, "{value}, {expected}");
+    }
+}
+
+/// τ = λ p whatever P does, if Q = λ P: in steps of given length of both rules.
+#[test]
+fn oblique_loading_sticks() {
+    for seed in 0..200 {
+        let mut draws = Draws::new(seed);
+        let (friction, part) = (draws.between(0.1, 0.9), draws.between(-0.99, 0.99));
+        let mut contact = ball(&relaxation(seed as usize % 3), friction);
+        if seed % 2 == 0 {
+            contact = contact.with_linear_steps();
+        }
+        let mut worst = 0.0f64;
+        for step in 0..30 {
+            let force = if draws.chance(0.1) { 0.0 } else { draws.power_of_ten(-2.0, 0.0) };
+            let dt = if step == 0 || draws.chance(0.1) { 0.0 } else { draws.power_of_ten(-2.0, 1.0) };
+            contact.step_sheared(dt, Load::force(force), Load::force(part * friction * force)).unwrap();
+            let most = contact.tractions().map(|(_, w)| w).fold(0.0, f64::max);
+            let off =
+                contact.tractions().zip(contact.shear_tractions()).map(|(w, q)| (q.1 - part * friction * w.1).abs());
+            worst = off.fold(worst, |worst, off| worst.max(off / (friction * most)));
+            assert_eq!(contact.stick_level(), contact.level(), "seed {seed}, step {step}");
+        }
+        assert!(worst < 1e-10, "seed {seed}: {worst:e}");
+    }
+}
+
+/// Displacements and springs that were read off a run under forces bring the forces back.
+#[test]
+fn motions_and_springs_bring_forces_back() {
+    let mut worst = 0.0f64;
+    for seed in 0..200 {
+        let mut draws = Draws::new(1000 + seed);
+        let friction = draws.between(0.1, 0.9);
+        let mut by_force = ball(&relaxation(seed as usize % 3), friction);
+        let (mut by_motion, mut by_spring) = (by_force.clone(), by_force.clone());
+        let stiffness = draws.power_of_ten(-2.0, 2.0);
+        for step in 0..30 {
+            let force = draws.power_of_ten(-1.0, 0.0);
+            let dt = if step == 0 || draws.chance(0.1) { 0.0 } else { draws.power_of_ten(-2.0, 1.0) };
+            let along = friction * force * draws.between(-0.95, 0.95);
+            by_force.step_sheared(dt, Load::force(force), Load::force(along)).unwrap();
+            let d = by_force.lateral_displacement();
+            by_motion.step_sheared(dt, Load::force(force), Load::approach(d)).unwrap();
+            by_spring.step_sheared(dt, Load::force(force), Load::spring(stiffness, d + along / stiffness)).unwrap();
+            for other in [&by_motion, &by_spring] {
+                worst = worst.max((other.lateral_force() - along).abs() / (friction * force));
+            }
+        }
+    }
+    assert!(worst < 1e-8, "{worst:e}");
+}
+
+/// A body that is moved farther than it can follow slides, and a force that is too great is refused.
+#[test]
+fn the_whole_contact_slides() {
+    let mut contact = ball(&zener(), 0.4);
+    contact.step(0.0, Load::force(1.0)).unwrap();
+    contact.step_sheared(0.0, Load::force(1.0), Load::approach(10.0)).unwrap();
+    assert!((contact.lateral_force() - 0.4).abs() < 1e-12 && contact.stick_level() == 0.0);
+    // a ball of ν = 0: d = f δ where all of it slips
+    assert!((contact.slid() - (10.0 - 0.4)).abs() < 1e-12, "{}", contact.slid());
+    let before = contact.lateral_work();
+    assert!((before.work - before.slip - before.stored - before.creep).abs() < 1e-12);
+    let error = contact.step_sheared(0.0, Load::force(1.0), Load::force(0.5)).unwrap_err().to_string();
+    assert!(error.contains("1.25 times what friction carries"), "{error}");
+    contact.step_sheared(0.0, Load::force(0.0), Load::force(0.0)).unwrap();
+    assert_eq!(contact.lateral_force(), 0.0);
+}
