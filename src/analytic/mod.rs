@@ -8,6 +8,7 @@
 //! | [`Jkr`], [`MaugisDugdale`], [`Dmt`] | sphere that sticks, by an attraction of short, any and long range; elastic |
 //! | [`AdhesivePunch`], [`AdhesiveCylinder`], [`AdhesiveWave`] | other shapes that stick, by an attraction of short range; elastic |
 //! | [`OpeningEdge`] | edge of a contact that opens at a speed, sphere that is pulled off; viscoelastic |
+//! | [`CattaneoMindlin`], [`LubkinTorsion`] | ball that is sheared or twisted, and slips in part; elastic |
 //! | [`RollingCylinder`] | cylinder in steady motion; one retardation time |
 //! | [`SlidingLimits`] | ball, ellipsoid, cylinder in slow or fast steady motion; any creep |
 //! | [`PerssonFriction`] | rough surface in steady motion, an estimate; any creep |
@@ -21,6 +22,7 @@ mod adhesion;
 mod growing_sphere;
 mod hertz;
 mod hertz_ellipse;
+mod partial_slip;
 mod persson;
 mod rigid_punch;
 mod rolling;
@@ -30,6 +32,7 @@ pub use adhesion::{AdhesiveCylinder, AdhesivePunch, AdhesiveWave, Dmt, Jkr, Maug
 pub use growing_sphere::GrowingSphere;
 pub use hertz::Hertz;
 pub use hertz_ellipse::HertzEllipse;
+pub use partial_slip::{CattaneoMindlin, LubkinTorsion};
 pub use persson::PerssonFriction;
 pub use rigid_punch::RigidPunch;
 pub use rolling::RollingCylinder;

@@ -68,17 +68,6 @@ impl Past {
         }
     }
 
-    /// Lets a group be at rest from now on.
-    fn rest(&mut self, group: usize) {
-        self.columns[1..HEAD].iter_mut().for_each(|column| column[group] = 0.0);
-    }
-
-    /// [`GroupHistory::lead`].
-    fn lead(&mut self, group: usize, part: f64, differences: [f64; 2]) {
-        let columns = self.columns[1..HEAD].iter_mut().zip(differences);
-        columns.for_each(|(column, difference)| column[group] += part * difference);
-    }
-
     #[cfg(feature = "checkpoint")]
     fn fits(&self, branches: usize, groups: usize) -> bool {
         let is_whole = |column: &Vec<f64>| column.len() == groups && column.iter().all(|value| value.is_finite());
@@ -170,20 +159,18 @@ impl GroupHistory {
         self.tangential.iter().for_each(|past| past.free_displacements(&self.rule, free));
     }
 
-    /// Accepts the step predicted last, which ends at the displacements `now`, and along the surface at `sheared`,
-    /// where the first groups `stick`.
-    pub(crate) fn commit(&mut self, now: &[f64], sheared: &[f64], stick: usize) {
+    /// Accepts the step predicted last, which ends at the displacements `now`, and along the surface at `sheared`.
+    pub(crate) fn commit(&mut self, now: &[f64], sheared: &[f64]) {
         self.rule.commit();
-        let leads = self.leads();
         self.normal.commit(&self.rule, now);
         if let Some(past) = &mut self.tangential {
             past.commit(&self.rule, sheared);
         }
-        // a group that was met is at rest from now on, along the surface as long as it sticks
-        if leads {
+        // a group that was met is at rest from now on
+        if self.leads() {
+            let [_, changes, bends, ..] = &mut self.normal.columns[..] else { return };
             let held = now.iter().enumerate().filter(|(_, now)| **now == 1.0);
-            held.for_each(|(k, _)| self.normal.rest(k));
-            self.tangential.iter_mut().for_each(|past| (0..stick).for_each(|k| past.rest(k)));
+            held.for_each(|(k, _)| (changes[k], bends[k]) = (0.0, 0.0));
         }
     }
 
@@ -203,12 +190,8 @@ impl GroupHistory {
 
     /// Lets a group have moved by such a part of these differences besides its own.
     pub(crate) fn lead(&mut self, group: usize, part: f64, differences: [f64; 2]) {
-        self.normal.lead(group, part, differences);
-    }
-
-    /// [`GroupHistory::lead`] along the surface.
-    pub(crate) fn lead_shear(&mut self, group: usize, part: f64, differences: [f64; 2]) {
-        self.tangential.iter_mut().for_each(|past| past.lead(group, part, differences));
+        let columns = self.normal.columns[1..HEAD].iter_mut().zip(differences);
+        columns.for_each(|(column, difference)| column[group] += part * difference);
     }
 
     /// The differences after the step accepted last of what moved by `differences` before, and by `change` in it.

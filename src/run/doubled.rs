@@ -16,7 +16,7 @@ use crate::run::control::{Control, Course};
 use crate::run::error_budget::ErrorBudget;
 use crate::run::histories::Histories;
 use crate::run::judge::{FIRST_STEP, Judge, MAX_GROWTH, Record, Tries};
-use crate::run::passage::{Passage, Span};
+use crate::run::passage::{AT_START, Passage, Span};
 #[cfg(feature = "checkpoint")]
 use crate::run::progress::Progress;
 use crate::run::progress::{SAME_TIME, Stepping};
@@ -44,6 +44,9 @@ pub(crate) struct Doubled<C, J> {
     tries: Tries<C>,
     /// The load within the step.
     passage: Passage,
+    /// The first time within the step at which what acts along the surface turns: what slips there turns back, and the
+    /// contact remembers where it turned.
+    turn: Option<f64>,
 }
 
 /// The order at which the error of a step fell from the length tried before, at most the one of the rule.
@@ -66,7 +69,7 @@ impl<C: Contact, J: Judge<C>> Doubled<C, J> {
     pub(crate) fn continued(contact: &C, record: Record<J>) -> Doubled<C, J> {
         let (before, whole) = (contact.clone(), J::trial(contact));
         let tries = Tries { halves: whole.clone(), middle: whole.clone(), whole };
-        Doubled { record, before, halved: false, tries, passage: Passage::default() }
+        Doubled { record, before, halved: false, tries, passage: Passage::default(), turn: None }
     }
 
     /// The history that the steps follow.
@@ -121,6 +124,8 @@ impl<C: Contact, J: Judge<C>> Doubled<C, J> {
                 continue;
             }
             let event = J::event(&self.record, contact, history, &self.passage, &mut self.tries.whole)?;
+            let turn = self.turn.filter(|turn| event.is_none_or(|event| *turn < event));
+            let event = turn.or(event);
             end = event.unwrap_or(end);
             let span = Span { now, end };
             let report = self.try_both(contact, history, span, cancelled)?;
@@ -148,7 +153,7 @@ impl<C: Contact, J: Judge<C>> Doubled<C, J> {
 
     /// Looks at the loads within a step, the normal one of which begins with this size: whether one is off a parabola.
     fn bends(&mut self, contact: &C, history: &dyn LoadHistory, span: Span, first: f64) -> Result<bool> {
-        let Doubled { record, passage, .. } = self;
+        let Doubled { record, passage, turn, .. } = self;
         // deviations below the least normal number are rounding
         let is_bent =
             |passage: &Passage, greatest| passage.bend(greatest) > f64::max(BEND * greatest, f64::MIN_POSITIVE);
@@ -156,6 +161,7 @@ impl<C: Contact, J: Judge<C>> Doubled<C, J> {
             let size_at = |time: f64| Ok(along.checked_before(time, true)?.main());
             passage.look(span, along.checked_at(span.now, true)?.main(), &record.bends_along, size_at)?;
             record.greatest_along = passage.top().abs().max(record.greatest_along);
+            *turn = passage.turns().map(|turn| turn.0).find(|turn| turn - span.now > AT_START * (span.end - span.now));
             Ok::<_, Error>(is_bent(passage, record.greatest_along))
         });
         let is_bent_along = along.transpose()?.unwrap_or(false);

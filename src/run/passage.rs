@@ -12,7 +12,7 @@ const UNEVEN: f64 = 0.4;
 /// The golden ratio spreads multiples evenly.
 const GOLDEN: f64 = 0.618_033_988_749_895;
 /// An event so early in a step, as a part of it, happens at its start.
-const AT_START: f64 = 1e-3;
+pub(crate) const AT_START: f64 = 1e-3;
 
 /// Start and end of a step.
 #[derive(Debug, Clone, Copy)]

@@ -195,10 +195,10 @@ impl Judge<StatesContact> for OnLevels {
         if whole.level() > 0.0 || halves.level() > 0.0 {
             see([0, 1].map(|k| ended[0][k] - ended[1][k]), scales);
         }
-        if let (Some(one), Some(two)) = (&whole.levels.shear, &halves.levels.shear) {
-            let ends = [one, two].map(|shear| [shear.displacement(), shear.force]);
-            let scales = [0, 1].map(|k| ends[1][k].abs().max(SMALL * two.greatest[k]));
-            see([0, 1].map(|k| ends[0][k] - ends[1][k]), scales);
+        if let (Some(off), Some(shear)) = (whole.levels.shear_distance(&halves.levels), &halves.levels.shear) {
+            let [far, most] = shear.greatest;
+            see([off[0], off[1]], [shear.displacement().abs().max(SMALL * far), shear.force.abs().max(SMALL * most)]);
+            see([off[2], 0.0], [shear.lost.max(SMALL * far * most), 0.0]);
         }
         // what steps like this one add since the last corner, and nothing brings back, may be as large as the
         // tolerance: to the depth under a spring, and to the surface of bodies apart that resist rates alone

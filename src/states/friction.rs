@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::contact::StepReport;
 use crate::error::{Result, StatesError, positive, within};
+use crate::hereditary::Interpolant;
 use crate::kernel::HalfSpace;
 use crate::load::{Load, LoadHistory, Tilt};
 use crate::rheology::Material;
@@ -73,7 +74,8 @@ pub struct LateralWork {
 /// contacts that shrink and meet again (docs/guides/friction.md has the proof and where it was tested).
 ///
 /// The levels that a step meets were sheared and pressed together: a step in which P and Q rise together is oblique
-/// loading, all of which sticks if Q < f P. To press first and then to shear (Cattaneo's case) takes two steps, of no
+/// loading, all of which sticks if Q < f P. Steps are linear in time, of second order: slip begins and ends in kinks.
+/// To press first and then to shear (Cattaneo's case) takes two steps, of no
 /// time if it happens at once.
 impl StatesContact {
     /// With a coefficient of friction, where bodies respond alike to normal and to tangential loads: in line contact,
@@ -133,6 +135,7 @@ impl StatesContact {
 
     fn rubbing(mut self, coefficient: f64, ratio: f64) -> Result<StatesContact> {
         let coefficient = positive("coefficient of friction", coefficient)?;
+        self = self.with_interpolant(Interpolant::Linear);
         self.levels.with_shear(&self.states);
         Arc::make_mut(&mut self.scene).friction = Some(Friction { coefficient, ratio, history: None });
         Ok(self)

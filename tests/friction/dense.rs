@@ -85,7 +85,8 @@ fn compare(seed: u64, worst: &mut Worst) {
     }
     levels.retain(|level| *level > 0.0);
     levels.push(1.01 * levels.iter().copied().fold(0.0, f64::max));
-    let between = from_environment("FRICTION_LEVELS", 1);
+    // the work of levels between two states errs by the square of their distance
+    let between = from_environment("FRICTION_LEVELS", 12);
     levels.push(1e-6 * levels[levels.len() - 1]);
     levels.sort_by(f64::total_cmp);
     let inner = |pair: &[f64]| {

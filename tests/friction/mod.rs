@@ -2,4 +2,5 @@
 
 mod bodies;
 mod dense;
+mod runs;
 mod steps;

@@ -181,10 +181,11 @@ impl Levels {
             let lead = if plain.level > self.level { self.lead() } else { 0.0 };
             let led = if lead > 0.0 { self.level_of(states, demand, lead) } else { plain };
             // levels that would pull: the edge has slowed down by more than a quadratic describes
-            let is_led = lead == 0.0 || lead <= self.swept(led.level);
-            let wanted = if is_led { led } else { plain };
-            if is_led && self.sticks_to(wanted.level).is_ok() || !self.reduce_order() {
-                break wanted;
+            if lead == 0.0 || lead <= self.swept(led.level) {
+                break led;
+            }
+            if !self.history.reduce_order(&mut self.trial) {
+                break plain;
             }
             has_order = false;
         };
@@ -214,13 +215,6 @@ impl Levels {
             return Err(StatesError::Below { time, level, first: states.first_level() }.into());
         }
         Ok(wanted)
-    }
-
-    /// Weighs the step predicted last with less degree, if it has any.
-    fn reduce_order(&mut self) -> bool {
-        let is_reduced = self.history.reduce_order(&mut self.trial);
-        self.predict_shear();
-        is_reduced
     }
 
     /// The level after a jump of a body without elastic response, which moves no surface: the present level if the
@@ -262,9 +256,9 @@ impl Levels {
                 self.lead_groups(self.groups_to(edge)..self.groups_to(level), lead, swept);
             }
             self.hold(level);
-            let stick = along.map_or(0, |along| self.shear_to(states, along, edge, [lead, swept]));
+            along.into_iter().for_each(|along| self.shear_to(states, along, edge));
             let sheared = self.shear.as_ref().map_or(&[][..], Shear::displacements);
-            self.history.commit(&self.trial, sheared, stick);
+            self.history.commit(&self.trial, sheared);
             self.passed = self.history.differences_after(self.passed, swept);
         } else if level == 0.0 {
             self.release();

@@ -4,7 +4,7 @@
 //! elastic states as the pressure, with a second share for each level: τ = ∫ θ q dl, of which the body moves by
 //! ∫ U dδ, U = C∗dθ. Levels below one s stick, so that their U stays; those between s and the edge slip, θ = ± f w;
 //! free ones carry nothing. A step slips from the edge inwards until its demand is met. Levels that are met in a step
-//! take one part of f w before any slips: none of them was in contact for longer than another carries more.
+//! take one part of f w before any slips. Steps are linear in time: where slip begins or ends, U has a kink.
 //!
 //! θ, U and what they make are divided by the coefficient of friction here.
 
@@ -166,12 +166,7 @@ impl Levels {
 
     /// Fails where a demand along the surface cannot be met at the end of a step: a force beyond friction, or a jump
     /// of a body without elastic response.
-    pub(in crate::states) fn check_shear(
-        &self,
-        time: f64,
-        along: Demand,
-        Wanted { level, lead, .. }: Wanted,
-    ) -> Result<()> {
+    pub(in crate::states) fn check_shear(&self, time: f64, along: Demand, Wanted { level, .. }: Wanted) -> Result<()> {
         let Some(shear) = &self.shear else { return Ok(()) };
         let (compliance, Wish { weights, sum }) = (self.history.rule().compliance(), Wish::new(along));
         if compliance == 0.0 && level > 0.0 {
@@ -185,7 +180,7 @@ impl Levels {
         let carried =
             |(bottom, _, group, free): (f64, _, &Group, f64)| (1.0 - free) * (group.top.min(level) - bottom).max(0.0);
         let beyond = (level - self.bottom(self.groups.len()).0).max(0.0);
-        let carried = self.spans().map(carried).sum::<f64>() + beyond - lead;
+        let carried = self.spans().map(carried).sum::<f64>() + beyond;
         let limit = if level > 0.0 { carried / compliance } else { 0.0 };
         if force.abs() > limit * (1.0 + ROUNDING) {
             return Err(StatesError::Slides { time, over_limit: force.abs() / limit }.into());
@@ -194,21 +189,21 @@ impl Levels {
     }
 
     /// Shears the groups that a step holds to a demand. Those that were held stick, those that were met share what is
-    /// needed, then the held ones slip from the edge inwards. Returns how many stick.
-    pub(super) fn shear_to(&mut self, states: &ElasticStates, along: Demand, edge: f64, lead: [f64; 2]) -> usize {
+    /// needed, then the held ones slip from the edge inwards.
+    pub(super) fn shear_to(&mut self, states: &ElasticStates, along: Demand, edge: f64) {
         let held = self.held();
         let met =
             if self.shear.as_ref().is_some_and(|shear| shear.whole) { held } else { self.groups_to(edge).min(held) };
         let (wish, met) = (Wish::new(along), met..held);
         let needed = self.stick_and_need(wish, met.start);
-        let (sense, part) = (if needed < 0.0 { -1.0 } else { 1.0 }, self.part_of_met(wish, met.clone(), needed, lead));
+        let (sense, part) = (if needed < 0.0 { -1.0 } else { 1.0 }, self.part_of_met(wish, met.clone(), needed));
         let share = sense * part.min(1.0);
-        let Some(shear) = &mut self.shear else { return 0 };
+        let Some(shear) = &mut self.shear else { return };
         met.clone().for_each(|k| shear.tractions[k] = share * self.groups[k].traction);
         let left = if part < 1.0 { 0.0 } else { needed - needed / part };
         let mut outcome = Outcome { stick: met.start, met, share, sense, left };
         self.slip(states, wish, &mut outcome);
-        self.commit_shear(along, &outcome, lead)
+        self.commit_shear(along, &outcome);
     }
 
     /// Lets the groups that were held stick, and nothing act on the others. Returns what is lacking of a wish.
@@ -229,11 +224,11 @@ impl Levels {
     }
 
     /// What is needed over what the groups that were met add if they slip; infinite without any.
-    fn part_of_met(&self, wish: Wish, met: Range<usize>, needed: f64, lead: [f64; 2]) -> f64 {
+    fn part_of_met(&self, wish: Wish, met: Range<usize>, needed: f64) -> f64 {
         let compliance = self.history.rule().compliance();
         let room = |k: usize| {
             let traction = self.groups[k].traction;
-            wish.of(widths(&self.groups, k), traction, compliance * traction + self.led(k, lead) * lead[0])
+            wish.of(widths(&self.groups, k), traction, compliance * traction)
         };
         let all = met.map(room).sum::<f64>();
         if needed == 0.0 {
@@ -243,11 +238,6 @@ impl Levels {
         } else {
             f64::INFINITY
         }
-    }
-
-    /// The part of the lead of the edge that a group that was met has.
-    fn led(&self, k: usize, [lead, swept]: [f64; 2]) -> f64 {
-        if lead > 0.0 { (1.0 - self.history.displacements()[k]) / swept } else { 0.0 }
     }
 
     /// Lets groups that were held slip, from the edge inwards, until nothing is left of a wish; cuts the last one.
@@ -278,17 +268,12 @@ impl Levels {
         }
     }
 
-    /// Moves the groups by their tractions, and takes in what the step has done. Returns how many groups stick.
-    fn commit_shear(&mut self, along: Demand, outcome: &Outcome, lead: [f64; 2]) -> usize {
+    /// Moves the groups by their tractions, and takes in what the step has done.
+    fn commit_shear(&mut self, along: Demand, outcome: &Outcome) {
         let Outcome { stick, ref met, share, left, .. } = *outcome;
         let compliance = self.history.rule().compliance();
-        for k in met.clone().filter(|_| lead[0] > 0.0) {
-            let led = share * self.led(k, lead);
-            self.history.lead_shear(k, led, self.passed);
-            self.shear.iter_mut().for_each(|shear| shear.trial[k] += led * lead[0]);
-        }
-        let Levels { history, groups, shear: Some(shear), .. } = self else { return 0 };
-        let Some((now, _)) = history.sheared() else { return 0 };
+        let Levels { history, groups, shear: Some(shear), .. } = self else { return };
+        let Some((now, _)) = history.sheared() else { return };
         let before = [shear.force, shear.displacement()];
         let (mut force, mut motion, mut lost) = (0.0, 0.0, 0.0);
         // of the levels above, ∫ θ dl and ∫ θ dδ, both in the mean of the step
@@ -318,7 +303,27 @@ impl Levels {
         shear.greatest = [shear.greatest[0].max(shear.displacement().abs()), shear.greatest[1].max(force.abs())];
         let stick = if share.abs() < 1.0 && stick == met.start { met.end } else { stick };
         shear.stick = stick.checked_sub(1).map_or(0.0, |k| groups[k].top);
-        stick
+    }
+
+    /// How far apart two outcomes of one step are along the surface: ∫ |δU| dδ, the most that their displacements can
+    /// ever differ by; the forces; and what slip has dissipated.
+    pub(in crate::states) fn shear_distance(&self, other: &Levels) -> Option<[f64; 3]> {
+        let (one, two) = (self.shear.as_ref()?, other.shear.as_ref()?);
+        let ((own, _), (others, _)) = (self.history.sheared()?, other.history.sheared()?);
+        let (mut far, mut k, mut lower) = (0.0, 0, 0.0);
+        for (group, now) in other.groups.iter().zip(others) {
+            loop {
+                let inside = self.groups.get(k).filter(|own| own.top < group.top);
+                let upper = inside.unwrap_or(group).motions.depth;
+                far += (now - own.get(k).copied().unwrap_or(0.0)).abs() * (upper - lower);
+                lower = upper;
+                if inside.is_none() {
+                    break;
+                }
+                k += 1;
+            }
+        }
+        Some([far + (one.slid - two.slid).abs(), (one.force - two.force).abs(), (one.lost - two.lost).abs()])
     }
 
     /// Releases all groups in a jump of a body without elastic response.

@@ -1,0 +1,204 @@
+//! Adaptive runs of contacts that are pressed and sheared, drawn at random: is the error what the tolerance asks for?
+//! The reference takes steps of given ends, many times finer. `FRICTION_RUNS=300` for the whole population.
+
+use std::sync::Arc;
+
+use crate::common::random_bodies::{Body, random_body};
+use crate::common::random_histories::{Control, random_history};
+use crate::common::{Draws, Ratios, from_environment};
+use viscocontact::prelude::*;
+use viscocontact::states::{ElasticStates, StatesContact};
+
+/// What acts along the surface: a part of what friction carries, or a motion of it.
+#[derive(Debug, Clone)]
+struct Along {
+    part: Arc<dyn LoadHistory>,
+    kind: Kind,
+}
+
+#[derive(Debug, Clone)]
+enum Kind {
+    /// Of f P.
+    Force(Arc<dyn LoadHistory>, f64),
+    /// Of a displacement.
+    Motion(f64),
+    /// Of the drive of a spring, and its stiffness.
+    Spring(f64, f64),
+}
+
+fn size(load: Load) -> f64 {
+    match load {
+        Load::Force { normal: size, .. } | Load::Approach { approach: size, .. } | Load::Spring { drive: size, .. } => {
+            size
+        }
+        _ => unreachable!("no other load"),
+    }
+}
+
+impl Along {
+    fn load(&self, part: Load, normal: impl Fn(&dyn LoadHistory) -> Load) -> Load {
+        let part = size(part);
+        match &self.kind {
+            Kind::Force(force, limit) => Load::force(limit * size(normal(&**force)) * part.clamp(-1.0, 1.0)),
+            Kind::Motion(most) => Load::approach(most * part),
+            Kind::Spring(most, stiffness) => Load::spring(*stiffness, most * part),
+        }
+    }
+}
+
+impl LoadHistory for Along {
+    fn at(&self, t: f64) -> Load {
+        self.load(self.part.at(t), |normal| normal.at(t))
+    }
+
+    fn before(&self, t: f64) -> Load {
+        self.load(self.part.before(t), |normal| normal.before(t))
+    }
+
+    fn next_breakpoint(&self, after: f64) -> Option<f64> {
+        let of_force = if let Kind::Force(normal, _) = &self.kind { normal.next_breakpoint(after) } else { None };
+        [self.part.next_breakpoint(after), of_force].into_iter().flatten().min_by(f64::total_cmp)
+    }
+}
+
+struct Scene {
+    name: String,
+    body: Body,
+    contact: StatesContact,
+    normal: Arc<dyn LoadHistory>,
+    corners: Vec<f64>,
+    tolerance: f64,
+}
+
+impl Scene {
+    /// `None` where Poisson's ratio changes, and of fluids, on which rates act.
+    fn new(seed: u64) -> Option<Scene> {
+        let draws = &mut Draws::new(seed);
+        let tolerance = [1e-2, 1e-3][draws.below(2)];
+        let body = random_body(draws);
+        if !body.is_elastic_at_once() || body.material.poisson_ratios().any(|ratio| ratio.is_none()) {
+            return None;
+        }
+        let states = match draws.below(3) {
+            0 => ElasticStates::sphere(1.0),
+            1 => ElasticStates::cone(0.3),
+            _ => ElasticStates::power(1.0, 4.0),
+        };
+        let (states, depth, friction) = (states.unwrap(), 0.3, draws.between(0.1, 0.9));
+        let force = states.level_at(depth) / body.material.contact_compliance(body.until);
+        let control = match draws.below(3) {
+            0 => Control::Force(force),
+            1 => Control::Approach { touch: 0.0, depth },
+            _ => Control::by_spring(draws, 0.0, depth, force),
+        };
+        let normal = random_history(draws, control, body.until, true);
+        let part = random_history(draws, Control::Approach { touch: -0.4, depth: 1.3 }, body.until, true);
+        let mut corners = [normal.corners.clone(), part.corners].concat();
+        let (history, far): (Arc<dyn LoadHistory>, _) = (Arc::from(normal.history), friction * depth);
+        let kind = match draws.below(3) {
+            0 if matches!(control, Control::Force(_)) => Kind::Force(Arc::clone(&history), 0.95 * friction),
+            0 | 1 => Kind::Motion(far * draws.scale(0.1, 3.0)),
+            _ => Kind::Spring(far * draws.scale(0.3, 3.0), force / depth * draws.scale(0.1, 10.0)),
+        };
+        let name = format!(
+            "{seed}: {}, {}; {} along {:?}, {tolerance:.0e}",
+            body.name,
+            normal.name,
+            part.name,
+            kind_of(&kind)
+        );
+        let along = Along { part: Arc::from(part.history), kind };
+        corners.retain(|corner| *corner > 0.0 && *corner < body.until);
+        let contact = StatesContact::new(&states, &body.material).unwrap();
+        let contact = contact.with_estimated_friction(friction).unwrap().sheared_by(along).unwrap();
+        Some(Scene { name, body, contact, normal: history, corners, tolerance })
+    }
+
+    /// Displacement, force and loss along the surface at times of a run of this tolerance whose steps end at more times.
+    fn run(&self, tolerance: f64, stops: &[f64], times: &[f64]) -> std::result::Result<(Vec<[f64; 4]>, usize), String> {
+        let (mut contact, mut found, mut steps) = (self.contact.clone(), Vec::new(), 0);
+        let mut run = contact.follow(&*self.normal, Stepping::adaptive(tolerance), self.body.until);
+        run = run.stop_at(stops.to_vec()).unwrap().sample_at(times.to_vec()).unwrap();
+        while run.next_step().map_err(|error| error.to_string())?.is_some() {
+            steps += 1;
+            if steps > 40_000 {
+                return Err(format!("{} of {}", run.contact().time(), self.body.until));
+            }
+            for sample in run.samples() {
+                let sample = sample.map_err(|error| error.to_string())?;
+                // at a jump the state before it
+                if sample.is_asked_for() && found.len() < times.len() {
+                    let (contact, work) = (sample.contact(), sample.contact().lateral_work());
+                    found.push([contact.lateral_displacement(), contact.lateral_force(), work.slip, work.work]);
+                }
+            }
+        }
+        Ok((found, steps))
+    }
+}
+
+fn kind_of(kind: &Kind) -> &'static str {
+    match kind {
+        Kind::Force(..) => "by force",
+        Kind::Motion(_) => "by displacement",
+        Kind::Spring(..) => "by spring",
+    }
+}
+
+#[test]
+fn sheared_runs_err_by_what_was_asked() {
+    let (count, first) = (from_environment("FRICTION_RUNS", 8), from_environment("FRICTION_SEED", 0));
+    let (mut ratios, mut work): ([Ratios; 3], Ratios) = Default::default();
+    let (mut failed, mut vague, mut seed) = (Vec::new(), 0, first);
+    while ratios[0].count() + failed.len() + vague < count as usize {
+        seed += 1;
+        let Some(scene) = Scene::new(seed) else { continue };
+        let until = scene.body.until;
+        let times: Vec<f64> = (1..=100).map(|k| until * (f64::from(k) - 0.37) / 100.0).collect();
+        let (found, steps) = match scene.run(scene.tolerance, &[], &times) {
+            Ok(found) => found,
+            Err(error) => {
+                failed.push(format!("{}: {error}", scene.name));
+                continue;
+            }
+        };
+        let fine = |parts: u32, factor: f64| {
+            let equal = (1..parts).map(|k| until * f64::from(k) / f64::from(parts));
+            let mut stops: Vec<f64> = equal.chain(scene.corners.iter().copied()).collect();
+            stops.sort_by(f64::total_cmp);
+            scene.run(factor * scene.tolerance, &stops, &times)
+        };
+        let (Ok((coarse, _)), Ok((exact, _))) = (fine(200, 0.1), fine(400, 0.04)) else {
+            vague += 1;
+            continue;
+        };
+        assert_eq!([found.len(), coarse.len(), exact.len()], [times.len(); 3], "{}", scene.name);
+        let mut greatest = [0, 1, 2, 3].map(|k| exact.iter().fold(0.0f64, |most, values| most.max(values[k].abs())));
+        // what hardly slips loses nothing
+        greatest[2] = greatest[2].max(0.1 * greatest[3]);
+        let apart = |a: &[[f64; 4]], k: usize| {
+            let off = a.iter().zip(&exact).map(|(a, b)| (a[k] - b[k]).abs()).fold(0.0, f64::max);
+            if greatest[k] > 0.0 { off / greatest[k] / scene.tolerance } else { 0.0 }
+        };
+        if (0..3).any(|k| apart(&coarse, k) > 0.5) {
+            vague += 1;
+            println!("vague {}: {:?}", scene.name, [0, 1, 2].map(|k| apart(&coarse, k)));
+            continue;
+        }
+        let name = format!("{}, {steps} steps", scene.name);
+        (0..3).for_each(|k| ratios[k].push(apart(&found, k), &name));
+        work.push(steps as f64, &name);
+        if count > 20 {
+            println!("{name}: {:.2} {:.2} {:.2}", apart(&found, 0), apart(&found, 1), apart(&found, 2));
+        }
+    }
+    println!("{count} runs, {vague} with a vague reference, {} failed: {failed:#?}", failed.len());
+    for (what, ratios) in ["displacement", "force", "loss"].iter().zip(&ratios) {
+        ratios.print(what, 4);
+    }
+    work.print("steps", 2);
+    assert!(failed.is_empty());
+    for ratios in &ratios {
+        assert!(ratios.quantile(0.99) < 2.0 && ratios.greatest() < 3.0);
+    }
+}
