@@ -12,6 +12,8 @@ use crate::{Axis, memory};
 
 /// Share of a motion, by its square, that is taken for dependent on the others: of a body that tilts on two cells.
 const DEPENDENT: f64 = 1e-9;
+/// Residual of a gradient, far below what differences of solutions resolve.
+const GRADIENT_TOLERANCE: f64 = 1e-12;
 
 impl Fields<'_> {
     /// Area of contact \[m²\].
@@ -63,13 +65,70 @@ impl Fields<'_> {
     /// while the body tilts freely about it along each axis of which the point is given: (S⁻¹)_i0 of the matrix
     /// S_ij = ∬ q_j ξ_i, K q_j = ξ_j on the contact, ξ = 1, x1 − e1, x2 − e2.
     pub(crate) fn stiffnesses(&self, load_point: [Option<f64>; 2]) -> Result<(f64, [f64; 3])> {
-        let (Held { region, current, .. }, rows) = (self.held, self.held.region.rows());
+        let current = &self.held.current;
         if current.contact_cells == 0 {
             return Ok((0.0, [f64::INFINITY, 0.0, 0.0]));
         }
         if self.ground.kernel.mean_is_held() && current.contact_cells == self.grid().len() {
             return Ok((f64::INFINITY, [0.0; 3]));
         }
+        let (_, matrix) = self.punches(load_point, FLAT_PUNCH_TOLERANCE)?;
+        Ok((matrix[0][0], solve_normal_equations(&matrix, [1.0, 0.0, 0.0], DEPENDENT)))
+    }
+
+    /// How the approach changes with the height of each cell, ∂ω/∂g: the pressure of a flat punch on the contact,
+    /// over its force. The gap g of the undeformed bodies is greater where the body is higher; the body carries a
+    /// given force, and does not tilt. One value per cell, ≥ 0, of the sum 1 where bodies touch, else 0. So an
+    /// elastic body that is held at its approach changes its force by −E* S ∂ω/∂g, with S the
+    /// [stiffness over the modulus](Fields::stiffness_over_modulus).
+    ///
+    /// It costs about twenty convolutions.
+    ///
+    /// ```
+    /// use viscocontact::elastic::ElasticContact;
+    /// use viscocontact::prelude::*;
+    ///
+    /// let grid = Grid::square(32, 3.0e-3)?;
+    /// let mut contact = ElasticContact::builder(grid).geometry(&Sphere::new(10.0e-3)?).modulus(1.0e6)?.build()?;
+    /// contact.solve(Load::force(3.0e-7))?;
+    /// let gradient = contact.fields().approach_gradient()?;
+    /// assert!((gradient.iter().sum::<f64>() - 1.0).abs() < 1e-9);
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If the iteration does not converge.
+    pub fn approach_gradient(&self) -> Result<Vec<f64>> {
+        self.load_point_gradient([None; 2])
+    }
+
+    /// [`Fields::approach_gradient`] of a load point about which the body tilts freely along each axis of which it is
+    /// given.
+    pub(crate) fn load_point_gradient(&self, load_point: [Option<f64>; 2]) -> Result<Vec<f64>> {
+        let Held { region, current, .. } = self.held;
+        let mut whole = vec![0.0; region.shown_len()];
+        if current.contact_cells == 0 {
+            return Ok(whole);
+        }
+        // the mean gap alone matters in full contact
+        if self.ground.kernel.mean_is_held() && current.contact_cells == self.grid().len() {
+            whole.fill(1.0 / current.contact_cells as f64);
+            return Ok(whole);
+        }
+        let (punches, matrix) = self.punches(load_point, GRADIENT_TOLERANCE)?;
+        let parts = solve_normal_equations(&matrix, [1.0, 0.0, 0.0], DEPENDENT).map(|part| part * region.cell_area());
+        let mut sum = vec![0.0; region.len()];
+        for (part, punch) in parts.into_iter().zip(&punches) {
+            sum.iter_mut().zip(punch).for_each(|(sum, q)| *sum += part * q);
+        }
+        region.show(&sum, &mut whole);
+        Ok(whole)
+    }
+
+    /// q_j with K q_j = ξ_j on the contact, and the matrix S_ij = ∬ q_j ξ_i, as [`Fields::stiffnesses`] has them;
+    /// empty and 0 along axes without free tilt.
+    fn punches(&self, load_point: [Option<f64>; 2], tolerance: f64) -> Result<([Vec<f64>; 3], [[f64; 3]; 3])> {
+        let (Held { region, current, .. }, rows) = (self.held, self.held.region.rows());
         let own;
         let kernel = match self.kernel {
             Some(kernel) => kernel,
@@ -84,13 +143,14 @@ impl Fields<'_> {
             Some(axis) => tilts(axis).map_or(0.0, |at| region.center(k)[axis] - at),
             None => 1.0,
         };
-        let mut matrix = [[0.0; 3]; 3];
+        let touches = |k: usize| current.solution.pressure[k] > 0.0;
+        let (mut punches, mut matrix) = ([const { Vec::new() }; 3], [[0.0; 3]; 3]);
         for j in (0..3).filter(|j| *j == 0 || tilts(j - 1).is_some()) {
             let q = kernel
                 .rows()
-                .unless_lost(|| Ok(flat_punch(kernel, |k| current.solution.pressure[k] > 0.0, |k| motion(j, k))))?
+                .unless_lost(|| Ok(flat_punch(kernel, touches, |k| motion(j, k), tolerance)))?
                 .map_err(|(iterations, residual)| {
-                    let (time, dt, tolerance) = (self.about.time.unwrap_or(0.0), 0.0, FLAT_PUNCH_TOLERANCE);
+                    let (time, dt) = (self.about.time.unwrap_or(0.0), 0.0);
                     let convergence = Convergence::new(Vec::new(), tolerance, true).into();
                     Error::Step(StepError::NotConverged { time, dt, iterations, residual, tolerance, convergence })
                 })?;
@@ -100,8 +160,9 @@ impl Fields<'_> {
                 let moments: Vec<f64> = q.iter().enumerate().map(|(k, q)| q * motion(i, k)).collect();
                 matrix[i][j] = rows.sum(&moments) * area;
             }
+            punches[j] = q;
         }
-        Ok((matrix[0][0], solve_normal_equations(&matrix, [1.0, 0.0, 0.0], DEPENDENT)))
+        Ok((punches, matrix))
     }
 
     /// Mean pressure over the contact \[Pa\]: force over [`contact_area`](Fields::contact_area); 0 without

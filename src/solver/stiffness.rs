@@ -9,11 +9,12 @@ const MAX_ITERATIONS: usize = 500;
 
 /// q with K q = `motion` on cells for which `touches` holds and q = 0 elsewhere: the pressure under a rigid motion of
 /// a body of unit compliance, by preconditioned conjugate gradients. If they do not converge, it fails with their
-/// number of iterations and the residual reached.
+/// number of iterations and the residual reached, relative to the motion as the `tolerance` is.
 pub(crate) fn flat_punch(
     kernel: &LocalKernel,
     touches: impl Fn(usize) -> bool,
     motion: impl Fn(usize) -> f64,
+    tolerance: f64,
 ) -> Result<Vec<f64>, (usize, f64)> {
     let (cells, rows) = (kernel.grid().len(), kernel.rows());
     let mut work = kernel.workspace();
@@ -23,14 +24,14 @@ pub(crate) fn flat_punch(
     let mut residual: Vec<f64> = inside.iter().enumerate().map(|(k, inside)| inside * motion(k)).collect();
     let (mut q, mut image) = (vec![0.0; cells], vec![0.0; cells]);
     let (mut direction, mut last) = (vec![0.0; cells], 0.0);
-    let limit = FLAT_PUNCH_TOLERANCE * FLAT_PUNCH_TOLERANCE * rows.sum_of_pairs(&residual, &residual, |a, b| a * b);
+    let limit = tolerance * tolerance * rows.sum_of_pairs(&residual, &residual, |a, b| a * b);
     let mut iterations = 0;
     loop {
         let square = rows.sum_of_pairs(&residual, &residual, |a, b| a * b);
         if square <= limit {
             return Ok(q);
         }
-        let failure = (iterations, (square / limit).sqrt() * FLAT_PUNCH_TOLERANCE);
+        let failure = (iterations, (square / limit).sqrt() * tolerance);
         iterations += 1;
         image.copy_from_slice(&residual);
         preconditioner.filter(&mut image, &mut work);

@@ -18,7 +18,7 @@ pub(super) fn state_under(contact: &mut ElasticContact, load: Load) -> Result<So
     let report = contact.solve(load)?;
     let (rounded, fields) = (contact.heights_are_lost(), contact.fields());
     let level = if let Load::Force { normal, .. } = load { normal } else { fields.force() };
-    let free = load.tilt().map(|tilt| if let Tilt::Free { at } = tilt { Some(at) } else { None });
+    let free = free_points(load.tilt());
     let (stiffness, [compliance, tilt_rate @ ..]) = fields.stiffnesses(free)?;
     let state = ElasticState {
         level,
@@ -37,6 +37,11 @@ pub(super) fn state_under(contact: &mut ElasticContact, load: Load) -> Result<So
         figures: Figures { modulus: None, ..report.figures },
     };
     Ok(Solved { state, pressure: Pressed::new(fields.pressure()) })
+}
+
+/// The point about which a body tilts freely, along each axis along which it does.
+pub(super) fn free_points(tilt: [Tilt; 2]) -> [Option<f64>; 2] {
+    tilt.map(|tilt| if let Tilt::Free { at } = tilt { Some(at) } else { None })
 }
 
 impl ElasticStates {

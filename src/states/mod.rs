@@ -47,6 +47,7 @@ mod curve;
 mod elastic;
 mod fields;
 mod friction;
+mod gradient;
 mod levels;
 mod outside;
 mod pressed;

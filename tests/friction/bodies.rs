@@ -61,7 +61,7 @@ impl Body {
 
     /// Tractions on cells that are `held`, and the motion of the body, at which c K t + `free` is the motion there and
     /// their sum a `force`; other cells carry what they have.
-    fn held(&self, c: f64, free: &[f64], cells: &[usize], tractions: &mut [f64], force: f64) -> f64 {
+    pub fn held(&self, c: f64, free: &[f64], cells: &[usize], tractions: &mut [f64], force: f64) -> f64 {
         let others: Vec<f64> =
             (0..tractions.len()).map(|k| if cells.contains(&k) { 0.0 } else { tractions[k] }).collect();
         let (of_others, m) = (self.displacement(&others), cells.len());

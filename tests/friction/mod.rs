@@ -2,5 +2,6 @@
 
 mod bodies;
 mod dense;
+mod gradients;
 mod runs;
 mod steps;
