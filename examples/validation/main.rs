@@ -8,6 +8,7 @@ mod claim;
 mod creep;
 mod elastic;
 mod energies;
+mod friction;
 mod history;
 mod layers;
 #[path = "../support/scenes/march.rs"]
@@ -60,7 +61,7 @@ fn zener() -> Outcome {
     Ok(checked)
 }
 
-const SCENES: [fn() -> Outcome; 36] = [
+const SCENES: [fn() -> Outcome; 39] = [
     elastic::convolution,
     elastic::hertz,
     elastic::hertz_ellipse,
@@ -97,6 +98,9 @@ const SCENES: [fn() -> Outcome; 36] = [
     adhesion::opening_edge,
     energies::held,
     energies::loop_of_a_sticking_ball,
+    friction::ball,
+    friction::punch,
+    friction::oblique,
 ];
 
 /// The table, in Markdown.

@@ -89,8 +89,8 @@ impl Fields<'_> {
     /// use viscocontact::prelude::*;
     ///
     /// let grid = Grid::square(32, 3.0e-3)?;
-    /// let mut contact = ElasticContact::builder(grid).geometry(&Sphere::new(10.0e-3)?).modulus(1.0e6)?.build()?;
-    /// contact.solve(Load::force(3.0e-7))?;
+    /// let mut contact = ElasticContact::builder(grid).geometry(&Sphere::new(10.0e-3)?).modulus(1.0e6).build()?;
+    /// contact.solve(Load::force(0.3))?;
     /// let gradient = contact.fields().approach_gradient()?;
     /// assert!((gradient.iter().sum::<f64>() - 1.0).abs() < 1e-9);
     /// # Ok::<(), viscocontact::Error>(())
