@@ -2,7 +2,7 @@
 //! the displacement, the force along the surface, and the tractions.
 //!
 //! Each patch of contact slips from its edge inwards until the whole pad slides. Slower pads have more time to creep: they stand on a
-//! greater contact, on softer rubber, and move farther before they slide.
+//! greater contact on softer rubber, so that the force over the displacement is nearly the same.
 //!
 //! `cargo run --release -p viscocontact --features plot,states,surfaces --example sheared_pad`
 

@@ -9,6 +9,7 @@
 //! | [`own_models`] | your own rheology, shape and load |
 //! | [`adhesion`] | surfaces that stick: law, range, resolution, loads that pull |
 //! | [`elastic_states`] | a surface solved once, for many materials and histories: when to take which |
+//! | [`friction`] | partial slip, shear and fretting of creeping bodies on elastic states |
 //! | [`steady_motion`] | sliding and rolling that do not change: when to step, and when to solve for the state |
 //! | [`coupling`] | a contact inside another integrator, with steps that are taken back |
 //! | [`long_runs`] | saved and resumed runs, many contacts on threads |
@@ -26,4 +27,4 @@ macro_rules! pages {
         }
     )*};
 }
-pages! { tour curves data accuracy own_models adhesion elastic_states steady_motion coupling long_runs results }
+pages! { tour curves data accuracy own_models adhesion elastic_states friction steady_motion coupling long_runs results }

@@ -1,4 +1,4 @@
-//! Frictionless contact of viscoelastic bodies.
+//! Contact of viscoelastic bodies.
 //!
 //! An indenter is pressed onto a creeping body: pressure, contact area and approach over time, for any shape and load history. The rheology is
 //! linear, its creep compliance concave after t = 0. Surfaces and creep may come from files.
@@ -59,7 +59,7 @@
 //! | identify a modulus by indentation | the package `viscocontact-identify` |
 //!
 //! Guides with programs, in the order of use: [`guide::tour`], [`guide::curves`], [`guide::data`], [`guide::accuracy`],
-//! [`guide::own_models`], [`guide::adhesion`], [`guide::elastic_states`], [`guide::steady_motion`], [`guide::coupling`], [`guide::long_runs`], [`guide::results`].
+//! [`guide::own_models`], [`guide::adhesion`], [`guide::elastic_states`], [`guide::friction`], [`guide::steady_motion`], [`guide::coupling`], [`guide::long_runs`], [`guide::results`].
 //!
 //! # Conventions
 //!
@@ -130,7 +130,7 @@
 //!
 //! # Limitations
 //!
-//! Coulomb friction, plasticity and finite deformation are outside the model; steps warn beyond small strains and slopes ([`guide::accuracy`]). With attraction
+//! Surfaces are frictionless but on elastic states ([`guide::friction`]); plasticity and finite deformation are outside the model; steps warn beyond small strains and slopes ([`guide::accuracy`]). With attraction
 //! there is one body on the whole grid ([`guide::adhesion`]). In time a [`Layer`] lies on a rigid base, or on one with the same creep function; bodies of several
 //! layers need a spectrum or influence coefficients ([`InfluenceKernel::from_spectrum`]).
 

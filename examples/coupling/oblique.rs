@@ -4,7 +4,7 @@
 //! flat ones slide throughout. The ball meets elastic states with friction by displacements in both directions, so that it slides
 //! where it has to; the equations of motion are integrated by the leapfrog rule.
 //!
-//! `cargo run --release -p viscocontact-coupling --example oblique`
+//! `cargo run --release -p viscocontact-coupling --bin oblique`
 
 use std::error::Error;
 use std::fs;
