@@ -58,10 +58,8 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         .with_hurst(0.8)
         .with_seed(3);
     let surface = Rough::new(&grid, spec)?;
-    let rubber = Material::incompressible(GeneralizedMaxwell::new(
-        0.3e6,
-        &[(0.3e6, 1.0e-2), (0.3e6, 1.0), (0.3e6, 1.0e2)],
-    )?);
+    let rubber =
+        Material::incompressible(GeneralizedMaxwell::new(0.3e6, &[(0.3e6, 1.0e-2), (0.3e6, 1.0), (0.3e6, 1.0e2)])?);
     let nominal = args.length * args.length;
     let load = Load::force(args.pressure * nominal);
     let durations: [f64; 3] = [1.0e-2, 1.0, 1.0e2];
@@ -70,18 +68,21 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         .keep_pressures()
         .run(Reach::Level(1.05 * args.pressure * nominal * rubber.contact_compliance(durations[2])))?;
     let quantity = Quantity::new("displacement", "m");
-    let mut areas = Chart::new("Contact and what sticks of it", quantity.clone(), "share of the surface", Legend::UpperRight);
+    let mut areas =
+        Chart::new("Contact and what sticks of it", quantity.clone(), "share of the surface", Legend::UpperRight);
     let mut forces = Chart::new("Force along the surface", quantity, "force over f P", Legend::LowerRight);
     let mut table = csv::Writer::from_path(args.output.join("areas.csv"))?;
     table.write_record(["duration [s]", "displacement [m]", "in contact", "sticks", "force over f P"])?;
     let (held, limit) = (StepLoad::new(load)?, args.friction * args.pressure * nominal);
     for (n, until) in durations.into_iter().enumerate() {
         let moved = Ramp::new(Load::approach(0.0), Load::approach(args.distance), until)?;
-        let mut contact = StatesContact::new(&states, &rubber)?.with_estimated_friction(args.friction)?.sheared_by(moved)?;
+        let mut contact =
+            StatesContact::new(&states, &rubber)?.with_estimated_friction(args.friction)?.sheared_by(moved)?;
         // first pressed, then sheared
         contact.step_sheared(0.0, load, Load::force(0.0))?;
         let (mut area, mut stick, mut force, mut half) = (Vec::new(), Vec::new(), Vec::new(), None);
-        let mut run = contact.follow(&held, Stepping::adaptive(1.0e-3), until).sample_at(Times::every(until / 100.0))?;
+        let mut run =
+            contact.follow(&held, Stepping::adaptive(1.0e-3), until).sample_at(Times::every(until / 100.0))?;
         while run.next_step()?.is_some() {
             for sample in run.samples() {
                 let sample = sample?;

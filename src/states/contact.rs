@@ -216,7 +216,7 @@ impl StatesContact {
     pub(super) fn advance(&mut self, time: f64, dt: f64, load: Load, along: Option<Load>) -> Result<StepReport> {
         let (demand, wanted, reduced) = self.predict(time, dt, load)?;
         let along = self.along(time, dt, along)?;
-        along.map_or(Ok(()), |along| self.levels.check_shear(time, along, wanted))?;
+        along.map_or(Ok(()), |along| self.levels.check_shear(&self.states, time, along, wanted))?;
         self.levels.accept(&self.states, demand, wanted, along);
         (self.time, self.reduced_time) = (time, reduced);
         self.prescribed = if let Load::Approach { approach, .. } = load { Some(approach) } else { None };
@@ -403,4 +403,5 @@ impl StatesContact {
 }
 
 debug_by!(self: StatesContact =>
-    time: self.time, force: self.force(), approach: self.approach(), tilt: self.tilt(), level: self.level(), groups: self.groups());
+    time: self.time, force: self.force(), approach: self.approach(), tilt: self.tilt(), level: self.level(), groups: self.groups(),
+    lateral_force: self.lateral_force(), lateral_displacement: self.lateral_displacement(), stick_level: self.stick_level());

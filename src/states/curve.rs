@@ -264,11 +264,8 @@ impl ElasticStates {
         let inner = self.nodes.get(middle).unwrap_or_default().iter().map(|node| node.level.exp());
         let (mut sum, mut bottom) = (0.0, from);
         for top in inner.chain(std::iter::once(to)).filter(|top| *top > from) {
-            let exponent = if bottom > 0.0 && top > bottom {
-                (self.depth(top) / self.depth(bottom)).ln() / (top / bottom).ln()
-            } else {
-                first.slope
-            };
+            let exponent = (self.depth(top) / self.depth(bottom)).ln() / (top / bottom).ln();
+            let exponent = if exponent.is_finite() { exponent } else { first.slope };
             sum += of_power([bottom, top], exponent);
             bottom = top;
         }

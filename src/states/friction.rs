@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::contact::StepReport;
-use crate::error::{Result, StatesError, positive, within};
+use crate::error::{Result, StatesError, within};
 use crate::hereditary::Interpolant;
 use crate::kernel::HalfSpace;
 use crate::load::{Load, LoadHistory, Tilt};
@@ -101,7 +101,7 @@ impl StatesContact {
     /// ```
     ///
     /// # Errors
-    /// If the coefficient is not finite and positive; [`StatesError::OtherKernel`] if bodies respond to tangential
+    /// If the coefficient is not above 0, or more than 10⁶; [`StatesError::OtherKernel`] if bodies respond to tangential
     /// loads in another way: [`StatesContact::with_estimated_friction`] takes them.
     pub fn with_friction(self, coefficient: f64) -> Result<StatesContact> {
         let (material, is_line) = (&self.scene.material, self.is_line()?);
@@ -118,7 +118,7 @@ impl StatesContact {
     /// 0.9 f P; that of a rough surface by 1.7 % in the median of 12, at most 8 %.
     ///
     /// # Errors
-    /// If the coefficient is not finite and positive; [`StatesError::OtherKernel`] of layers and other kernels than
+    /// If the coefficient is not above 0, or more than 10⁶; [`StatesError::OtherKernel`] of layers and other kernels than
     /// those of half-spaces, and of bodies whose Poisson's ratio changes with time.
     pub fn with_estimated_friction(self, coefficient: f64) -> Result<StatesContact> {
         let (material, is_line) = (&self.scene.material, self.is_line()?);
@@ -134,7 +134,8 @@ impl StatesContact {
     }
 
     fn rubbing(mut self, coefficient: f64, ratio: f64) -> Result<StatesContact> {
-        let coefficient = positive("coefficient of friction", coefficient)?;
+        let allowed = "above 0, at most 1e6";
+        within("coefficient of friction", coefficient, coefficient > 0.0 && coefficient <= 1e6, allowed)?;
         self = self.with_interpolant(Interpolant::Linear);
         self.levels.with_shear(&self.states);
         Arc::make_mut(&mut self.scene).friction = Some(Friction { coefficient, ratio, history: None });

@@ -3,5 +3,6 @@
 mod bodies;
 mod dense;
 mod gradients;
+mod kept;
 mod runs;
 mod steps;

@@ -39,6 +39,13 @@ fn table(source: &mut Source) -> Verdict {
     let Ok(mut contact) = states.and_then(|states| StatesContact::new(&states, &material)) else {
         return Ok(Outcome::Refused);
     };
+    if source.chance(0.5) {
+        let coefficient = if source.chance(0.1) { source.anything() } else { source.between(0.05, 1.5) };
+        match contact.clone().with_estimated_friction(coefficient) {
+            Ok(rubs) => contact = rubs,
+            Err(_) => return Ok(Outcome::Refused),
+        }
+    }
     let depth = contact.states().states().last().map_or(1.0, |state| state.approach);
     let mut taken = 0;
     for _ in 0..8 {
@@ -50,8 +57,20 @@ fn table(source: &mut Source) -> Verdict {
             2 => Load::approach(depth * source.between(-0.5, 1.2)),
             _ => Load::spring(source.scale(1e-3, 1e9), depth * source.between(-0.5, 1.2)),
         };
-        match contact.step(dt, load) {
+        let along = match source.below(5) {
+            0 => Load::force(source.anything()),
+            1 => Load::force(contact.force() * source.between(-0.5, 0.5)),
+            2 => Load::approach(depth * source.between(-2.0, 2.0)),
+            3 => Load::spring(source.scale(1e-3, 1e9), depth * source.between(-2.0, 2.0)),
+            _ => Load::force(0.0),
+        };
+        let rubs = contact.clone().with_slip_from_start().is_ok();
+        let taken_step = if rubs { contact.step_sheared(dt, load, along) } else { contact.step(dt, load) };
+        match taken_step {
             Ok(report) => {
+                let work = contact.lateral_work();
+                let along = [contact.lateral_force(), contact.lateral_displacement(), contact.stick_level()];
+                known("shear", [along[0], along[1], along[2], work.work, work.slip, work.stored])?;
                 let contact = [contact.contact_area(), contact.level(), contact.stiffness_over_modulus()];
                 known("report", [report.time, report.force, report.approach, contact[0], contact[1], contact[2]])?;
                 taken += 1;

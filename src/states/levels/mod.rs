@@ -81,6 +81,9 @@ pub(super) struct Levels {
 impl Clone for Levels {
     fn clone(&self) -> Levels {
         let mut levels = Levels::new(self.history.rule().clone());
+        if self.shear.is_some() {
+            levels.make_room_for_shear();
+        }
         levels.copy_from(self);
         levels
     }

@@ -17,6 +17,9 @@ use crate::states::levels::{Demand, GROUPS, Group, Levels, ROUNDING, Wanted};
 /// Sums of as many terms as there are groups are rounded by about this part of them.
 const ROUNDED: f64 = 64.0 * f64::EPSILON;
 
+/// Works below this \[J\] are numbers, and their sums.
+const GREATEST_WORK: f64 = 1e200;
+
 /// What happens along the surface.
 #[derive(Debug, Default)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
@@ -111,13 +114,19 @@ fn widths(groups: &[Group], k: usize) -> [f64; 2] {
 impl Levels {
     /// With friction; nothing has acted along the surface yet.
     pub(in crate::states) fn with_shear(&mut self, states: &ElasticStates) {
-        self.history.shear(GROUPS);
-        self.shear = Some(Shear { stick: self.level, ..Shear::default() });
+        self.make_room_for_shear();
+        self.shear.iter_mut().for_each(|shear| shear.stick = self.level);
         let (mut bottom, mut work) = (0.0, 0.0);
         for group in &mut self.groups {
             work += states.work(bottom, group.top);
             (bottom, group.work) = (group.top, work);
         }
+    }
+
+    pub(super) fn make_room_for_shear(&mut self) {
+        self.history.shear(GROUPS);
+        let [trial, tractions] = [(); 2].map(|()| Vec::with_capacity(GROUPS));
+        self.shear = Some(Shear { trial, tractions, ..Shear::default() });
     }
 
     /// Lets levels that are met slip from the start of the step on.
@@ -164,9 +173,15 @@ impl Levels {
         if worst > 0.0 && level > 0.0 { Err(worst) } else { Ok(()) }
     }
 
-    /// Fails where a demand along the surface cannot be met at the end of a step: a force beyond friction, or a jump
-    /// of a body without elastic response.
-    pub(in crate::states) fn check_shear(&self, time: f64, along: Demand, Wanted { level, .. }: Wanted) -> Result<()> {
+    /// Fails where a demand along the surface cannot be met at the end of a step: a force beyond friction, a jump of a
+    /// body without elastic response, or where the work is no number.
+    pub(in crate::states) fn check_shear(
+        &self,
+        states: &ElasticStates,
+        time: f64,
+        along: Demand,
+        Wanted { level, .. }: Wanted,
+    ) -> Result<()> {
         let Some(shear) = &self.shear else { return Ok(()) };
         let (compliance, Wish { weights, sum }) = (self.history.rule().compliance(), Wish::new(along));
         if compliance == 0.0 && level > 0.0 {
@@ -175,6 +190,11 @@ impl Levels {
             let what = "a jump of the load along the surface";
             let is_met = (parts[0] + parts[1] - sum).abs() <= ROUNDING * size;
             return if is_met { Ok(()) } else { Err(StepError::NoElasticResponse { time, what }.into()) };
+        }
+        let far = shear.displacement().abs() + sum.abs() + states.depth(level.max(self.level));
+        let work = far * (self.force + level.max(self.level) / compliance.max(f64::MIN_POSITIVE));
+        if work.is_nan() || work >= GREATEST_WORK {
+            return Err(StepError::Overflow { time, what: "the work along the surface" }.into());
         }
         let Demand::Force(force) = along else { return Ok(()) };
         let carried =
