@@ -15,6 +15,13 @@ const DEPENDENT: f64 = 1e-9;
 /// Residual of a gradient, far below what differences of solutions resolve.
 const GRADIENT_TOLERANCE: f64 = 1e-12;
 
+/// The pressures q_j of unit motions, K q_j = ξ_j on the contact, and S_ij = ∬ q_j ξ_i, as [`Fields::stiffnesses`] has
+/// them; empty and 0 along axes without free tilt.
+struct Punches {
+    fields: [Vec<f64>; 3],
+    matrix: [[f64; 3]; 3],
+}
+
 impl Fields<'_> {
     /// Area of contact \[m²\].
     ///
@@ -72,7 +79,7 @@ impl Fields<'_> {
         if self.ground.kernel.mean_is_held() && current.contact_cells == self.grid().len() {
             return Ok((f64::INFINITY, [0.0; 3]));
         }
-        let (_, matrix) = self.punches(load_point, FLAT_PUNCH_TOLERANCE)?;
+        let matrix = self.punches(load_point, FLAT_PUNCH_TOLERANCE)?.matrix;
         Ok((matrix[0][0], solve_normal_equations(&matrix, [1.0, 0.0, 0.0], DEPENDENT)))
     }
 
@@ -115,19 +122,18 @@ impl Fields<'_> {
             whole.fill(1.0 / current.contact_cells as f64);
             return Ok(whole);
         }
-        let (punches, matrix) = self.punches(load_point, GRADIENT_TOLERANCE)?;
+        let Punches { fields, matrix } = self.punches(load_point, GRADIENT_TOLERANCE)?;
         let parts = solve_normal_equations(&matrix, [1.0, 0.0, 0.0], DEPENDENT).map(|part| part * region.cell_area());
         let mut sum = vec![0.0; region.len()];
-        for (part, punch) in parts.into_iter().zip(&punches) {
+        for (part, punch) in parts.into_iter().zip(&fields) {
             sum.iter_mut().zip(punch).for_each(|(sum, q)| *sum += part * q);
         }
         region.show(&sum, &mut whole);
         Ok(whole)
     }
 
-    /// q_j with K q_j = ξ_j on the contact, and the matrix S_ij = ∬ q_j ξ_i, as [`Fields::stiffnesses`] has them;
-    /// empty and 0 along axes without free tilt.
-    fn punches(&self, load_point: [Option<f64>; 2], tolerance: f64) -> Result<([Vec<f64>; 3], [[f64; 3]; 3])> {
+    /// The contact as a flat punch in each motion that is free.
+    fn punches(&self, load_point: [Option<f64>; 2], tolerance: f64) -> Result<Punches> {
         let (Held { region, current, .. }, rows) = (self.held, self.held.region.rows());
         let own;
         let kernel = match self.kernel {
@@ -144,7 +150,7 @@ impl Fields<'_> {
             None => 1.0,
         };
         let touches = |k: usize| current.solution.pressure[k] > 0.0;
-        let (mut punches, mut matrix) = ([const { Vec::new() }; 3], [[0.0; 3]; 3]);
+        let (mut fields, mut matrix) = ([const { Vec::new() }; 3], [[0.0; 3]; 3]);
         for j in (0..3).filter(|j| *j == 0 || tilts(j - 1).is_some()) {
             let q = kernel
                 .rows()
@@ -160,9 +166,9 @@ impl Fields<'_> {
                 let moments: Vec<f64> = q.iter().enumerate().map(|(k, q)| q * motion(i, k)).collect();
                 matrix[i][j] = rows.sum(&moments) * area;
             }
-            punches[j] = q;
+            fields[j] = q;
         }
-        Ok((punches, matrix))
+        Ok(Punches { fields, matrix })
     }
 
     /// Mean pressure over the contact \[Pa\]: force over [`contact_area`](Fields::contact_area); 0 without

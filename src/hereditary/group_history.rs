@@ -223,12 +223,15 @@ impl GroupHistory {
         &self.normal.columns[0]
     }
 
-    /// The displacement of each group along the surface, if there is friction, and the stress of each relaxation time
-    /// with its modulus, the longest first.
-    pub(crate) fn sheared(&self) -> Option<(&[f64], impl Iterator<Item = (f64, &[f64])>)> {
-        let columns = &self.tangential.as_ref()?.columns;
-        let moduli = self.rule.influences().map(|(modulus, _)| modulus);
-        Some((&columns[0], moduli.zip(columns[HEAD..].iter().rev().map(Vec::as_slice))))
+    /// The displacement of each group along the surface, if there is friction.
+    pub(crate) fn sheared(&self) -> Option<&[f64]> {
+        self.tangential.as_ref().map(|past| &past.columns[0][..])
+    }
+
+    /// The modulus of each relaxation time, the longest first, and the stress of each group along the surface.
+    pub(crate) fn shear_stresses(&self) -> impl Iterator<Item = (f64, &[f64])> {
+        let stresses = self.tangential.iter().flat_map(|past| past.columns[HEAD..].iter().rev());
+        self.rule.influences().map(|(modulus, _)| modulus).zip(stresses.map(Vec::as_slice))
     }
 
     /// Adds an undisturbed group after the others.

@@ -67,8 +67,8 @@ struct Worst {
 fn compare(seed: u64, worst: &mut Worst) {
     let mut draws = Draws::new(seed);
     let (friction, relaxation) = (draws.between(0.1, 0.9), relaxation(seed as usize % 3));
-    let body = if seed % 2 == 0 { Body::line(48, &mut draws) } else { Body::half_space(9, &mut draws) };
-    let steps = history(24, body.force() * if seed % 2 == 0 { 0.25 } else { 1.0 }, friction, &mut draws);
+    let body = if seed.is_multiple_of(2) { Body::line(48, &mut draws) } else { Body::half_space(9, &mut draws) };
+    let steps = history(24, body.force() * if seed.is_multiple_of(2) { 0.25 } else { 1.0 }, friction, &mut draws);
     let take = |states: &std::sync::Arc<ElasticStates>| {
         let contact = StatesContact::new(states, &material(&relaxation)).unwrap().with_linear_steps();
         contact.with_merge_error(0.0).unwrap().with_friction(friction).unwrap().with_slip_from_start().unwrap()

@@ -100,17 +100,17 @@ fn gradients_are_differences_of_runs() {
             |by: f64| gap.iter().zip(&direction).map(|(gap, direction)| gap + by * direction).collect::<Vec<_>>();
         let grid = || Grid::square(CELLS, 1.0).unwrap();
         let end = |by: f64| {
-            let settings = settings.clone().with_time_rule(TimeRule::ExponentialLinear);
+            let settings = settings.with_time_rule(TimeRule::ExponentialLinear);
             let moved = moved(by);
             let builder =
                 ViscoelasticContact::builder(grid()).geometry(&geometry(&moved)).material(material(&relaxation));
             let mut contact = builder.settings(settings).build().unwrap();
-            steps.iter().for_each(|&(dt, force)| drop(contact.step(dt, Load::force(force)).unwrap()));
+            steps.iter().for_each(|&(dt, force)| _ = contact.step(dt, Load::force(force)).unwrap());
             contact.approach()
         };
-        let states = Sweep::new(grid(), &geometry(&gap)).settings(settings.clone()).run(Reach::Level(4.0)).unwrap();
+        let states = Sweep::new(grid(), &geometry(&gap)).settings(settings).run(Reach::Level(4.0)).unwrap();
         let mut contact = StatesContact::new(&states, &material(&relaxation)).unwrap().with_linear_steps();
-        steps.iter().for_each(|&(dt, force)| drop(contact.step(dt, Load::force(force)).unwrap()));
+        steps.iter().for_each(|&(dt, force)| _ = contact.step(dt, Load::force(force)).unwrap());
         let inner = |a: &[f64]| a.iter().zip(&direction).map(|(a, b)| a * b).sum::<f64>();
         let h = 1e-7;
         let difference = (end(h) - end(-h)) / (2.0 * h);
@@ -122,7 +122,7 @@ fn gradients_are_differences_of_runs() {
             let mut elastic = ElasticContact::builder(grid())
                 .geometry(&geometry(&moved))
                 .modulus(1.0)
-                .settings(settings.clone())
+                .settings(settings)
                 .build()
                 .unwrap();
             elastic.solve(Load::approach(0.05)).unwrap();

@@ -54,7 +54,7 @@ fn oblique_loading_sticks() {
         let mut draws = Draws::new(seed);
         let (friction, part) = (draws.between(0.1, 0.9), draws.between(-0.99, 0.99));
         let mut contact = ball(&relaxation(seed as usize % 3), friction);
-        if seed % 2 == 0 {
+        if seed.is_multiple_of(2) {
             contact = contact.with_linear_steps();
         }
         let mut worst = 0.0f64;

@@ -141,7 +141,7 @@ impl Levels {
 
     /// ½ Σ ∫∫ a(l) a(l′) κ(max(l, l′)) dl dl′, the energy of springs, with κ = dδ/dl and a = √E∞ U and q_i/√E_i.
     pub(in crate::states) fn stored_along(&self) -> f64 {
-        let Some((now, stresses)) = self.history.sheared() else { return 0.0 };
+        let Some(now) = self.history.sheared() else { return 0.0 };
         let of = |a: &[f64]| {
             let (mut below, mut sum) = (0.0, 0.0);
             for (k, a) in a.iter().enumerate() {
@@ -152,7 +152,8 @@ impl Levels {
             }
             sum
         };
-        self.history.rule().equilibrium() * of(now) + stresses.map(|(modulus, q)| of(q) / modulus).sum::<f64>()
+        self.history.rule().equilibrium() * of(now)
+            + self.history.shear_stresses().map(|(modulus, q)| of(q) / modulus).sum::<f64>()
     }
 
     pub(super) fn predict_shear(&mut self) {
@@ -163,7 +164,7 @@ impl Levels {
     /// Whether all levels up to one that were held can stick, |θ| ≤ w, so that those that slip are the ones at the
     /// edge. If not, the maximum of |θ| over w.
     pub(super) fn sticks_to(&self, level: f64) -> Result<(), f64> {
-        let (Some((now, _)), Some(shear)) = (self.history.sheared(), &self.shear) else { return Ok(()) };
+        let (Some(now), Some(shear)) = (self.history.sheared(), &self.shear) else { return Ok(()) };
         let held = self.groups.partition_point(|group| group.top < self.level.min(level) * (1.0 - ROUNDING)) + 1;
         let over = |k: usize| {
             let (holds, presses) = ((now[k] - shear.trial[k]).abs(), 1.0 - self.trial[k]);
@@ -235,7 +236,7 @@ impl Levels {
         let slid = wish.weights[1] * shear.slid;
         let (mut needed, mut size) = (wish.sum - slid, wish.sum.abs() + slid.abs());
         for (k, traction) in shear.tractions.iter_mut().enumerate() {
-            let stuck = history.sheared().filter(|_| k < stick).map(|(now, _)| now[k]);
+            let stuck = history.sheared().filter(|_| k < stick).map(|now| now[k]);
             *traction = stuck.map_or(0.0, |now| (now - shear.trial[k]) / compliance);
             let has = wish.of(widths(groups, k), *traction, stuck.unwrap_or(shear.trial[k]));
             (needed, size) = (needed - has, size + has.abs());
@@ -293,7 +294,7 @@ impl Levels {
         let Outcome { stick, ref met, share, left, .. } = *outcome;
         let compliance = self.history.rule().compliance();
         let Levels { history, groups, shear: Some(shear), .. } = self else { return };
-        let Some((now, _)) = history.sheared() else { return };
+        let Some(now) = history.sheared() else { return };
         let before = [shear.force, shear.displacement()];
         let (mut force, mut motion, mut lost) = (0.0, 0.0, 0.0);
         // of the levels above, ∫ θ dl and ∫ θ dδ, both in the mean of the step
@@ -329,7 +330,7 @@ impl Levels {
     /// ever differ by; the forces; and what slip has dissipated.
     pub(in crate::states) fn shear_distance(&self, other: &Levels) -> Option<[f64; 3]> {
         let (one, two) = (self.shear.as_ref()?, other.shear.as_ref()?);
-        let ((own, _), (others, _)) = (self.history.sheared()?, other.history.sheared()?);
+        let (own, others) = (self.history.sheared()?, other.history.sheared()?);
         let (mut far, mut k, mut lower) = (0.0, 0, 0.0);
         for (group, now) in other.groups.iter().zip(others) {
             loop {
