@@ -25,7 +25,7 @@ pub fn ball() -> Outcome {
     let mut contact = StatesContact::new(&ElasticStates::sphere(radius)?, &body)?.with_friction(FRICTION)?;
     contact.step_sheared(0.0, Load::force(FORCE), Load::force(0.0))?;
     let most = 0.8 * exact.limit;
-    let mut move_to = |contact: &mut StatesContact, force: f64| -> Result<f64> {
+    let move_to = |contact: &mut StatesContact, force: f64| -> Result<f64> {
         contact.step_sheared(0.0, Load::force(FORCE), Load::force(force))?;
         Ok(contact.lateral_displacement())
     };

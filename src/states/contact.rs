@@ -4,15 +4,15 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::contact::{Estimated, Figures, Limits, StepReport, Warnings};
 use crate::elastic::ElasticContact;
-use crate::error::{Error, Result, StatesError, non_negative};
+use crate::error::{Result, StatesError, non_negative};
 use crate::hereditary::{ExponentialRule, Interpolant};
 use crate::kernel::Layer;
 use crate::load::Load;
 use crate::rheology::{Material, TemperatureHistory};
 use crate::solver::RigidMotion;
+use crate::states::coulomb::Friction;
 use crate::states::curve::ElasticStates;
 use crate::states::elastic::state_under;
-use crate::states::friction::Friction;
 use crate::states::levels::{Demand, Levels, Wanted};
 
 /// A contact of one material on the [`ElasticStates`] of its surface, advanced step by step like a
@@ -270,45 +270,6 @@ impl StatesContact {
         let solved = state_under(&mut elastic.lock().unwrap_or_else(PoisonError::into_inner), load)?;
         Arc::make_mut(&mut self.states).insert(solved.state, solved.pressure);
         Ok(())
-    }
-
-    /// The contact as it is, to come back to: a clone.
-    pub fn snapshot(&self) -> StatesContact {
-        self.clone()
-    }
-
-    /// [`StatesContact::snapshot`] into one made before, without allocating where there is room.
-    pub fn snapshot_into(&self, snapshot: &mut StatesContact) {
-        match snapshot.is_of(self) {
-            true => snapshot.copy_from(self),
-            false => *snapshot = self.clone(),
-        }
-    }
-
-    /// Goes back to a snapshot, without allocating where there is room: the steps that follow are the same as they
-    /// were, bitwise, with exact states to the tolerance of the solver.
-    ///
-    /// # Errors
-    /// If the snapshot was made of another contact; a contact and its clones may exchange theirs.
-    pub fn restore(&mut self, snapshot: &StatesContact) -> Result<()> {
-        if !snapshot.is_of(self) {
-            return Err(Error::OF_OTHER_CONTACT);
-        }
-        self.copy_from(snapshot);
-        Ok(())
-    }
-
-    /// Whether both are clones of one contact.
-    fn is_of(&self, other: &StatesContact) -> bool {
-        Arc::ptr_eq(&self.scene, &other.scene)
-    }
-
-    pub(super) fn copy_from(&mut self, other: &StatesContact) {
-        self.states.clone_from(&other.states);
-        self.levels.copy_from(&other.levels);
-        let StatesContact { time, reduced_time, undisturbed_until, prescribed, .. } = *other;
-        (self.time, self.reduced_time, self.undisturbed_until) = (time, reduced_time, undisturbed_until);
-        self.prescribed = prescribed;
     }
 
     /// Depth of the load point \[m\].

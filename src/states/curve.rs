@@ -251,27 +251,6 @@ impl ElasticStates {
         hermite([a.depth, b.depth], [a.slope, b.slope].map(|slope| slope * (b.level - a.level)), s).exp()
     }
 
-    /// ∫ δ dl from one level to a greater one \[m³\], with δ a power of the level between two states: the work of an
-    /// elastic contact, over its modulus, is δ l less this.
-    pub(super) fn work(&self, from: f64, to: f64) -> f64 {
-        let of_power = |[a, b]: [f64; 2], exponent: f64| {
-            let product = |level: f64| level * self.depth(level);
-            if a < b { (product(b) - product(a)) / (1.0 + exponent) } else { 0.0 }
-        };
-        let Some(first) = self.nodes.first() else { return 0.0 };
-        let middle = self.nodes.partition_point(|node| node.level.exp() <= from)
-            ..self.nodes.partition_point(|node| node.level.exp() < to);
-        let inner = self.nodes.get(middle).unwrap_or_default().iter().map(|node| node.level.exp());
-        let (mut sum, mut bottom) = (0.0, from);
-        for top in inner.chain(std::iter::once(to)).filter(|top| *top > from) {
-            let exponent = (self.depth(top) / self.depth(bottom)).ln() / (top / bottom).ln();
-            let exponent = if exponent.is_finite() { exponent } else { first.slope };
-            sum += of_power([bottom, top], exponent);
-            bottom = top;
-        }
-        sum
-    }
-
     /// Error of the interpolation at a state in the middle, in ln l, of two others, relative to the depth: of the
     /// depth, of what the tilts lift at the edge of the contact and at the origin, or of what the slopes contribute.
     /// Each cell that joins is a kink of δ(l), and slopes scatter by as much; depths may then agree in the middle

@@ -6,50 +6,11 @@ use crate::contact::StepReport;
 use crate::error::{Result, StatesError, within};
 use crate::hereditary::Interpolant;
 use crate::kernel::HalfSpace;
-use crate::load::{Load, LoadHistory, Tilt};
+use crate::load::{Load, LoadHistory};
 use crate::rheology::Material;
 use crate::states::contact::StatesContact;
-use crate::states::levels::Demand;
-
-/// Coulomb's law of a contact.
-#[derive(Debug, Clone)]
-pub(super) struct Friction {
-    /// Coefficient of friction f.
-    coefficient: f64,
-    /// Tangential compliance over the normal one.
-    ratio: f64,
-    /// What acts along the surface.
-    history: Option<Arc<dyn LoadHistory>>,
-}
-
-impl Friction {
-    /// What tells it from another.
-    #[cfg(feature = "checkpoint")]
-    pub(super) fn numbers(&self) -> [f64; 2] {
-        [self.coefficient, self.ratio]
-    }
-
-    /// A unit of displacement, which levels count in parts of the coefficient and of the normal compliance \[m\].
-    fn of_displacement(&self) -> f64 {
-        self.coefficient * self.ratio
-    }
-
-    /// What a load along the surface asks of the levels.
-    fn demand(&self, load: Load) -> Result<Demand> {
-        for tilt in load.tilt() {
-            let (Tilt::Fixed(angle) | Tilt::Free { at: angle }) = tilt;
-            within("tilt of a load along the surface", angle, tilt == Tilt::Fixed(0.0), "0: it only shifts the body")?;
-        }
-        let of_displacement = self.of_displacement();
-        Ok(match load {
-            Load::Force { normal: force, .. } => Demand::Force(force / self.coefficient),
-            Load::Approach { approach: shift, .. } => Demand::Depth { depth: shift / of_displacement, give: 0.0 },
-            Load::Spring { stiffness, drive, .. } => {
-                Demand::Depth { depth: drive / of_displacement, give: 1.0 / (stiffness * self.ratio) }
-            }
-        })
-    }
-}
+use crate::states::coulomb::Friction;
+use crate::states::levels::{Demand, Shear};
 
 /// Where the work along the surface went, since the contact was made \[J\]: work = slip + stored + creep.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -205,7 +166,7 @@ impl StatesContact {
     }
 
     /// What the levels have along the surface, times the coefficient, if there is friction.
-    fn sheared<T>(&self, of: impl Fn(&Friction, &crate::states::levels::Shear) -> T) -> Option<T> {
+    fn sheared<T>(&self, of: impl Fn(&Friction, &Shear) -> T) -> Option<T> {
         Some(of(self.scene.friction.as_ref()?, self.levels.shear.as_ref()?))
     }
 

@@ -43,6 +43,7 @@ mod closed_forms;
 mod contact;
 mod contacts;
 mod control;
+mod coulomb;
 mod curve;
 mod elastic;
 mod fields;
@@ -59,6 +60,7 @@ mod run;
 mod run_fields;
 #[cfg(feature = "checkpoint")]
 mod saved;
+mod snapshot;
 mod solved_curve;
 mod superposed;
 mod sweep;

@@ -1,4 +1,4 @@
-//! Fields as superpositions of the pressures that a sweep kept.
+//! Sums over the states of a sweep: fields of the pressures that it kept, and work.
 
 use crate::error::{Result, StatesError};
 use crate::states::curve::ElasticStates;
@@ -29,5 +29,23 @@ impl ElasticStates {
         if upper > 0 {
             shares[upper - 1] += weight * (1.0 - share);
         }
+    }
+
+    /// ∫ δ dl from one level to a greater one \[m³\], with δ a power of the level between two states: the work of an
+    /// elastic contact, over its modulus, is δ l less this.
+    pub(super) fn work(&self, from: f64, to: f64) -> f64 {
+        let [low, high] = [from, to].map(|level| self.states.partition_point(|state| state.level <= level));
+        let inner = self.states.get(low..high).unwrap_or_default().iter().map(|state| state.level);
+        let (mut sum, mut bottom) = (0.0, from);
+        for top in inner.chain(std::iter::once(to)).filter(|top| *top > from) {
+            // below the first state it is a power, too
+            let low = if bottom > 0.0 { bottom } else { 0.5 * top };
+            let exponent = (self.depth(top) / self.depth(low)).ln() / (top / low).ln();
+            let product = top * self.depth(top) - bottom * self.depth(bottom);
+            // levels as near as rounding
+            sum += if exponent.is_finite() { product / (1.0 + exponent) } else { 0.0 };
+            bottom = top;
+        }
+        sum
     }
 }

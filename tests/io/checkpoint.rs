@@ -89,9 +89,9 @@ fn damaged_files_are_refused() {
     }
     let mut newer = bytes.clone();
     newer[8] = 99;
-    assert_eq!(refuse(&newer), CheckpointError::Format { found: 99, known: 20 });
-    newer[8] = 19;
-    assert_eq!(refuse(&newer), CheckpointError::Format { found: 19, known: 20 });
+    assert_eq!(refuse(&newer), CheckpointError::Format { found: 99, known: 21 });
+    newer[8] = 20;
+    assert_eq!(refuse(&newer), CheckpointError::Format { found: 20, known: 21 });
     assert_eq!(refuse(b"PK\x03\x04 an archive of something else"), CheckpointError::Foreign);
     let longer = [&bytes[..], &[0]].concat();
     assert_eq!(refuse(&longer), CheckpointError::Damaged);

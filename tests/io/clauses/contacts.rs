@@ -194,7 +194,7 @@ pub fn rows(t: &mut Table) {
     pressed().save(&path).unwrap();
     let bytes = std::fs::read(&path).unwrap();
     for (change, says) in [
-        (8, "…: the checkpoint is of format 119, this version reads format…"),
+        (8, "…: the checkpoint is of format 118, this version reads format…"),
         (bytes.len() - 3, "…: the checkpoint is damaged or truncated: its checksum is not that of…"),
     ] {
         let mut changed = bytes.clone();
