@@ -91,7 +91,8 @@ impl StatesContact {
             let compliance = body.contact_compliance(0.0).max(f64::MIN_POSITIVE);
             sums = [sums[0] + ratio * compliance, sums[1] + compliance];
         }
-        self.rubbing(coefficient, sums[0] / sums[1])
+        let ratio = Some(sums[0] / sums[1]).filter(|ratio| ratio.is_finite()).ok_or(StatesError::OtherKernel)?;
+        self.rubbing(coefficient, ratio)
     }
 
     fn rubbing(mut self, coefficient: f64, ratio: f64) -> Result<StatesContact> {
