@@ -91,7 +91,9 @@ impl StatesContact {
             let compliance = body.contact_compliance(0.0).max(f64::MIN_POSITIVE);
             sums = [sums[0] + ratio * compliance, sums[1] + compliance];
         }
-        let ratio = Some(sums[0] / sums[1]).filter(|ratio| ratio.is_finite()).ok_or(StatesError::OtherKernel)?;
+        // 3/4 at ν = −1 to 3/2 at ν = ½, unless the sums are no numbers
+        let ratio =
+            Some(sums[0] / sums[1]).filter(|ratio| (0.5..2.0).contains(ratio)).ok_or(StatesError::OtherKernel)?;
         self.rubbing(coefficient, ratio)
     }
 
