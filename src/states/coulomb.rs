@@ -40,7 +40,9 @@ impl Friction {
             Load::Force { normal: force, .. } => Demand::Force(force / self.coefficient),
             Load::Approach { approach: shift, .. } => Demand::Depth { depth: shift / of_displacement, give: 0.0 },
             Load::Spring { stiffness, drive, .. } => {
-                Demand::Depth { depth: drive / of_displacement, give: 1.0 / (stiffness * self.ratio) }
+                let (give, allowed) = (1.0 / (stiffness * self.ratio), "so great that its inverse is a number");
+                within("stiffness of a spring along the surface", stiffness, give.is_finite(), allowed)?;
+                Demand::Depth { depth: drive / of_displacement, give }
             }
         })
     }
