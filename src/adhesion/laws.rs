@@ -29,20 +29,20 @@ fn gaps(attraction: &dyn Attraction) -> impl Iterator<Item = f64> {
 /// The integral over an interval, which is halved where two halves differ from the whole.
 fn integrate(
     rule: &GaussLegendre,
-    [from, to]: [f64; 2],
+    from: f64,
+    to: f64,
     accurate: f64,
     halvings: usize,
     value: &dyn Fn(f64) -> f64,
 ) -> f64 {
     let middle = 0.5 * (from + to);
-    let [first, second] = [[from, middle], [middle, to]].map(|[from, to]| rule.integrate(from, to, value));
-    let whole = rule.integrate(from, to, value);
-    let agree = halvings + LEAST_HALVINGS <= HALVINGS && (first + second - whole).abs() <= accurate;
-    if halvings == 0 || agree {
-        return first + second;
+    let halves = rule.integrate(from, middle, value) + rule.integrate(middle, to, value);
+    let off = (halves - rule.integrate(from, to, value)).abs();
+    if halvings == 0 || halvings + LEAST_HALVINGS <= HALVINGS && off <= accurate {
+        return halves;
     }
-    let ends = [[from, middle], [middle, to]];
-    ends.map(|ends| integrate(rule, ends, accurate, halvings - 1, value)).iter().sum()
+    let part = |from, to| integrate(rule, from, to, accurate, halvings - 1, value);
+    part(from, middle) + part(middle, to)
 }
 
 fn check(law: &'static str, quantity: &'static str, gap: f64, [found, expected]: [f64; 2], holds: bool) -> Verdict {
@@ -113,7 +113,7 @@ fn energy_is_within(same: f64, attraction: &dyn Attraction) -> Verdict {
     let accurate = 1e-3 * same * work;
     for gap in gaps(attraction).skip(1) {
         let lost = attraction.energy(from) - attraction.energy(gap);
-        let integral = integrate(&rule, [from, gap], accurate, HALVINGS, &|gap| attraction.traction(gap));
+        let integral = integrate(&rule, from, gap, accurate, HALVINGS, &|gap| attraction.traction(gap));
         check(law, "energy", gap, [lost, integral], (lost - integral).abs() <= same * work)?;
         from = gap;
     }

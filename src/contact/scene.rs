@@ -35,7 +35,7 @@ impl Scene {
     }
 
     /// The reduced time that passes between two times a `length` apart.
-    pub(crate) fn reduced_length(&self, [from, to]: [f64; 2], length: f64) -> Result<f64> {
+    pub(crate) fn reduced_length(&self, from: f64, to: f64, length: f64) -> Result<f64> {
         match &self.temperature {
             Some(history) if length > 0.0 => history.reduced_time(from, to),
             _ => Ok(length),

@@ -6,7 +6,7 @@ use crate::error::{Error, Result, StepError, coverage};
 use crate::fields::Fields;
 use crate::load::Load;
 use crate::observe::MeshError;
-use crate::observe::area::Pressed;
+use crate::observe::area::PressedCells;
 use crate::observe::grid_convergence::{OfMesh, SINGULAR, SMOOTH, off_means};
 use crate::{Grid, sum};
 
@@ -203,7 +203,7 @@ fn mesh_error(fields: Fields<'_>) -> Result<Option<MeshError>> {
 /// Σ |p − p′| / Σ p′ over the cells of the coarser mesh, each about every other fine one: p′ are means over it.
 fn difference(coarse: &Coarse, fine: &[f64], grid: &Grid, periodic: [bool; 2]) -> f64 {
     let [n1, n2] = grid.cells();
-    let fine = Pressed { grid, first: None, periodic, pressure: fine, gap: &[], extent: None };
+    let fine = PressedCells { grid, first: None, periodic, pressure: fine, gap: &[], extent: None };
     // beside every other cell, of which a coarse one holds half; along a line there are no others
     let beside = |n: usize, k: usize| {
         let k = k as isize;

@@ -299,10 +299,10 @@ impl OnRegion for Solver {
         // p ≥ 0, h ≥ 0, p h = 0, with force and moments in balance
         let Request { tolerance, cancelled, .. } = request;
         let stop = Stop { tolerance, max_iterations: ground.settings.max_iterations, cancelled };
-        let given = [c, bodies.greatest_motion(&ground.grid)];
+        let prescribed = bodies.greatest_motion(&ground.grid);
         guess_forces(ground, held, window.gap(request.indenter), request, c, trial);
         initial_guess(held, (&held.current, 0.0), window, trial, request, c);
-        let solve = |trial: &mut Trial| window.solve(request.indenter, given, stop, trial);
+        let solve = |trial: &mut Trial| window.solve(request.indenter, c, prescribed, stop, trial);
         let outcome = solve_with_springs(ground, held, request, c, trial, solve);
         converged(outcome, ground, &trial.solution, request)
     }

@@ -126,7 +126,7 @@ impl Case {
     }
 
     /// Fails in the first of its special scenes that `is` the case.
-    pub(crate) fn unless(self, mut is: impl FnMut(Special) -> bool) -> Result<()> {
+    pub(crate) fn refuse_if(self, mut is: impl FnMut(Special) -> bool) -> Result<()> {
         let found = self.1.iter().find(|(special, _)| is(*special));
         found.map_or(Ok(()), |special| Err(self.refused(*special)))
     }

@@ -46,7 +46,7 @@ pub use step::StepError;
 pub use table::{Place, TableError};
 pub use text::TextError;
 pub use user::UserError;
-pub(crate) use user::{Failure, unless_failed};
+pub(crate) use user::{Failure, or_failure_of};
 pub(crate) use violation::KIND_OF_LOAD;
 pub use violation::{Location, Verdict, Violation};
 

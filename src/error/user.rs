@@ -54,7 +54,7 @@ impl PartialEq for UserError {
 
 /// What `compute` makes of values of a user's function, or the error of the function in this call: `failure` takes
 /// it, and one of an earlier call before.
-pub(crate) fn unless_failed<T>(
+pub(crate) fn or_failure_of<T>(
     failure: impl Fn() -> Option<UserError>,
     compute: impl FnOnce() -> crate::Result<T>,
 ) -> crate::Result<T> {

@@ -45,7 +45,7 @@ impl Fields<'_> {
         let Held { region, .. } = self.held;
         let rows = region.rows();
         count_within("rank", to, to < rows.ranks(), "less than the number of ranks")?;
-        rows.unless_lost(|| {
+        rows.or_loss(|| {
             rows.agree(exact_length("field", field.len(), region.shown_len()))?;
             let [n1, n2] = self.grid().cells();
             let brought = self.bring(field, Some(to), 0..n1, 0..n2)?;
@@ -127,7 +127,7 @@ impl Fields<'_> {
     /// Returns `own` if all ranks succeed, else an error on every rank.
     pub(crate) fn agreed<T>(&self, own: Result<T>) -> Result<T> {
         let rows = self.held.region.rows();
-        rows.unless_lost(|| rows.agree(own))
+        rows.or_loss(|| rows.agree(own))
     }
 
     /// Runs `job` on rank 0 alone; all ranks wait for it and share its error.

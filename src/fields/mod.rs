@@ -293,7 +293,7 @@ impl<'a> Fields<'a> {
 
     /// Refuses what this contact does not cover.
     pub(crate) fn covers(&self, case: coverage::Case) -> Result<()> {
-        case.unless(|special| match special {
+        case.refuse_if(|special| match special {
             Special::Attraction => self.ground.attraction.is_some(),
             Special::SteadyMotion | Special::OwnContact => false,
             Special::Ranks => self.held.region.is_shared(),

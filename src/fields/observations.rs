@@ -4,7 +4,7 @@ use crate::equilibrium::Held;
 use crate::error::{Convergence, Error, Result, StepError, coverage, finite};
 use crate::fields::Fields;
 use crate::linalg::solve_normal_equations;
-use crate::observe::area::Pressed;
+use crate::observe::area::PressedCells;
 use crate::observe::profile::line_through;
 use crate::observe::{Asymmetry, Distribution, LineProfile, Patches};
 use crate::solver::{FLAT_PUNCH_TOLERANCE, flat_punch};
@@ -152,14 +152,13 @@ impl Fields<'_> {
         let touches = |k: usize| current.solution.pressure[k] > 0.0;
         let (mut fields, mut matrix) = ([const { Vec::new() }; 3], [[0.0; 3]; 3]);
         for j in (0..3).filter(|j| *j == 0 || tilts(j - 1).is_some()) {
-            let q = kernel
-                .rows()
-                .unless_lost(|| Ok(flat_punch(kernel, touches, |k| motion(j, k), tolerance)))?
-                .map_err(|(iterations, residual)| {
+            let q = kernel.rows().or_loss(|| Ok(flat_punch(kernel, touches, |k| motion(j, k), tolerance)))?.map_err(
+                |(iterations, residual)| {
                     let (time, dt) = (self.about.time.unwrap_or(0.0), 0.0);
                     let convergence = Convergence::new(Vec::new(), tolerance, true).into();
                     Error::Step(StepError::NotConverged { time, dt, iterations, residual, tolerance, convergence })
-                })?;
+                },
+            )?;
             let area = region.cell_area();
             matrix[0][j] = rows.sum(&q) * area;
             for i in (1..3).filter(|i| tilts(i - 1).is_some()) {
@@ -254,7 +253,7 @@ impl Fields<'_> {
         let rows = self.held.region.rows();
         let line_of = |field: &[f64]| self.line_of(field, along, line);
         let [pressure, displacement, gap] =
-            rows.unless_lost(|| Ok([line_of(self.pressure())?, line_of(self.displacement())?, line_of(&field)?]))?;
+            rows.or_loss(|| Ok([line_of(self.pressure())?, line_of(self.displacement())?, line_of(&field)?]))?;
         let traction = if self.attraction().is_some() {
             self.traction_into(&mut field)?;
             line_of(&field)?
@@ -308,8 +307,8 @@ impl Fields<'_> {
         Ok(gap)
     }
 
-    fn pressed(&self) -> Pressed<'_> {
-        Pressed {
+    fn pressed(&self) -> PressedCells<'_> {
+        PressedCells {
             grid: self.grid(),
             first: None,
             periodic: self.kernel().periodic_axes(),

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use crate::equilibrium::Held;
 use crate::fields::Fields;
-use crate::observe::area::{Pressed, REACH};
+use crate::observe::area::{PressedCells, REACH};
 use crate::parallel::Rows;
 
 /// Rows that are looked at together.
@@ -45,7 +45,8 @@ impl Fields<'_> {
                 gap.extend(pressure.iter().map(|&p| if p == NOTHING { f64::INFINITY } else { 0.0 }));
                 pressure.iter_mut().for_each(|p| *p = p.max(0.0));
                 let (periodic, first) = (self.ground.kernel.periodic_axes(), Some(first));
-                let pressed = Pressed { grid: self.grid(), first, periodic, pressure: &pressure, gap: &gap, extent };
+                let pressed =
+                    PressedCells { grid: self.grid(), first, periodic, pressure: &pressure, gap: &gap, extent };
                 covered.extend(squares(piece).map(|row| [pressed.covered_in_row(row)]));
             }
         }

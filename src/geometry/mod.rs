@@ -51,7 +51,7 @@ pub use wavy::Wavy;
 
 use std::fmt::Debug;
 
-use crate::error::{Error, Result, UserError, unless_failed};
+use crate::error::{Error, Result, UserError, or_failure_of};
 use crate::{Grid, memory};
 
 /// The gap between the undeformed bodies at zero approach.
@@ -173,7 +173,7 @@ pub(crate) fn evaluate(geometry: &dyn Geometry, grid: &Grid) -> Result<Vec<f64>>
         }
         Ok(gap)
     };
-    unless_failed(|| geometry.failure(), fill)
+    or_failure_of(|| geometry.failure(), fill)
 }
 
 /// Refuses NaN and −∞.

@@ -81,8 +81,8 @@ pub(crate) struct Weights {
     pub(super) dt: f64,
     /// Degree of u on the step.
     degree: usize,
-    /// Whether it puts the step before right, and is to be put right by the next one.
-    corrects: [bool; 2],
+    corrects_last: bool,
+    corrected_by_next: bool,
     /// Compliance of the step.
     pub(super) c: f64,
     /// Of u and its differences in u_old.
@@ -103,7 +103,9 @@ pub(crate) struct Weights {
     known: usize,
 }
 
-clone_by_fields! { Weights { dt, degree, corrects, c, past, branches, terms, ratios, defects, answer, span, known } }
+clone_by_fields! { Weights {
+    dt, degree, corrects_last, corrected_by_next, c, past, branches, terms, ratios, defects, answer, span, known,
+} }
 
 /// A step that is longer than so many times the one before is not continued from it by a quadratic, ...
 const LONGEST_CONTINUED: f64 = 4.0;
@@ -224,7 +226,7 @@ impl ExponentialRule {
     }
 
     /// The responses of v, in the step predicted last, to a unit of u that the steps before do not predict: of the polynomial on the
-    /// step, and γ₁ + γ₂ + γ₃ = 1/c − E∞. The change raises all differences of u, and so what puts the step before right.
+    /// step, and γ₁ + γ₂ + γ₃ = 1/c − E∞. The change raises all differences of u, and so the correction of the step before.
     pub(super) fn responses_to_unexpected(&self) -> [f64; 2] {
         [self.tried.answer, 1.0 / self.tried.c - self.equilibrium()]
     }
@@ -237,9 +239,9 @@ impl ExponentialRule {
         self.relaxation.terms().iter().map(response).sum()
     }
 
-    /// Whether the next step puts right the one predicted last.
+    /// Whether the next step corrects the one predicted last.
     pub(super) fn corrects(&self) -> bool {
-        self.tried.corrects[1]
+        self.tried.corrected_by_next
     }
 
     /// Where the steps before do not determine how u continues ([`Self::missing`]): the response of the step predicted last to a unit of v
@@ -302,27 +304,27 @@ impl ExponentialRule {
         }
         let degree = if dt > self.longest_continued() * self.spans[0] { 1 } else { wanted };
         let corrected = interpolant != Interpolant::Linear;
-        self.weigh_as(dt, degree, [corrected && dt >= MIN_CORRECTING * self.spans[0], corrected]);
+        self.weigh_as(dt, degree, corrected && dt >= MIN_CORRECTING * self.spans[0], corrected);
     }
 
     /// Whether the step can be weighed with less degree.
     pub(super) fn has_less(&self) -> bool {
-        self.tried.degree > 1 || self.tried.corrects[0]
+        self.tried.degree > 1 || self.tried.corrects_last
     }
 
-    /// The weights of the same step with less degree: linear, then without what puts the step before right.
+    /// The weights of the same step with less degree: linear, then without the correction of the step before.
     pub(super) fn reduce_order(&mut self) {
-        let Weights { dt, degree, corrects: [corrects, corrected], .. } = self.tried;
-        self.weigh_as(dt, 1, [corrects && degree > 1, corrected]);
+        let Weights { dt, degree, corrects_last, corrected_by_next, .. } = self.tried;
+        self.weigh_as(dt, 1, corrects_last && degree > 1, corrected_by_next);
         self.repeated += 1;
     }
 
-    fn weigh_as(&mut self, dt: f64, degree: usize, corrects: [bool; 2]) {
+    fn weigh_as(&mut self, dt: f64, degree: usize, corrects_last: bool, corrected_by_next: bool) {
         let jump = dt == 0.0;
         let apart = self.known > 0 && !(1.0 / FARTHEST_APART..=FARTHEST_APART).contains(&(self.spans[0] / dt));
         let known = if jump || apart { 0 } else { self.known };
         let degree = degree.min(known + 1);
-        let lacking = if corrects[0] && known + 1 >= self.lacking { self.lacking } else { 0 };
+        let lacking = if corrects_last && known + 1 >= self.lacking { self.lacking } else { 0 };
         let [past, before] = [0, 1].map(|k| if k < known { self.spans[k] / dt } else { 0.0 });
         let late_past = if known > 1 { before / past } else { 0.0 };
         // Δ (Δ + Δ′) … over Δ^k
@@ -368,7 +370,7 @@ impl ExponentialRule {
         (tried.dt, tried.degree, tried.c, tried.ratios) = (dt, degree, c, ratios);
         tried.past = [kept, differences[0], differences[1]];
         (tried.terms, tried.span) = (degree.max(lacking), products[1]);
-        tried.corrects = [lacking > 0, corrects[1]];
+        (tried.corrects_last, tried.corrected_by_next) = (lacking > 0, corrected_by_next);
         tried.defects = if jump { [0.0; 2] } else { defects };
         tried.answer = gains[0] + if degree > 1 { defects[0] } else { 0.0 };
         tried.known = if jump { 0 } else { (known + 1).min(self.kept) };
@@ -380,7 +382,7 @@ impl ExponentialRule {
         self.at_start = (self.spans, self.known, self.lacking);
         self.known = step.known;
         self.spans = if step.dt > 0.0 { [step.dt, self.spans[0]] } else { [0.0; 2] };
-        self.lacking = if step.corrects[1] && self.known > 0 { step.degree + 1 } else { 0 };
+        self.lacking = if step.corrected_by_next && self.known > 0 { step.degree + 1 } else { 0 };
         self.committed.clone_from(&self.tried);
         self.accepted = self.accepted.wrapping_add(1);
     }

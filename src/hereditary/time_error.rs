@@ -44,6 +44,21 @@ pub(crate) struct ErrorMeasure<'a> {
     pub(crate) context: &'a StepContext,
 }
 
+impl ErrorMeasure<'_> {
+    /// An error of the surface counts by the force with which the bodies meet it again, and where a spring gives way by
+    /// their approach.
+    fn of_meeting(&self, rule: &ExponentialRule) -> [f64; 2] {
+        let (Meeting { stiffness, .. }, give) = (self.context.meeting, self.give);
+        if !give.is_finite() {
+            return [self.on_switch / rule.compliance(), 0.0];
+        }
+        // without an elastic response the force is unbounded at short times
+        let glassy = if rule.has_dashpot() { stiffness.min(1.0 / rule.compliance()) } else { stiffness };
+        let series = glassy / (1.0 + give * glassy);
+        [series, give * series]
+    }
+}
+
 /// What is known of the error in time of a step.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct TimeError {
@@ -81,12 +96,9 @@ impl History {
     /// is the error of a force under given motion. Under a given force, the error of u is c times it, or more if the
     /// defects of many steps add up.
     pub(crate) fn time_error(&self, measure: ErrorMeasure<'_>) -> TimeError {
-        let rule = self.rule();
-        if !rule.has_memory() {
-            return TimeError::default();
-        }
-        let (dt, context) = (rule.tried.dt, measure.context);
-        if rule.has_dashpot() && dt <= context.beginning {
+        let (rule, context) = (self.rule(), measure.context);
+        let dt = rule.tried.dt;
+        if !rule.has_memory() || rule.has_dashpot() && dt <= context.beginning {
             return TimeError::default();
         }
         let weight = Weight::new(measure.rows, measure.pressure, rule.has_dashpot());
@@ -122,17 +134,7 @@ impl History {
         let of_v = (WEIGHTS.edge * kinks).max(smooth);
         let error_of_u = if matters[0] > 0.0 { relative(of_u, scales[0]) } else { 0.0 };
         let error_of_v = if matters[1] > 0.0 { matters[1] * relative(of_v, scales[1]) } else { 0.0 };
-        // an error of the surface counts by the force with which the bodies meet it again, and where a spring gives
-        // way by their approach
-        let (Meeting { stiffness, .. }, give) = (context.meeting, measure.give);
-        let [of_force, of_approach] = if give.is_finite() {
-            // without an elastic response the force is unbounded at short times
-            let glassy = if rule.has_dashpot() { stiffness.min(1.0 / rule.compliance()) } else { stiffness };
-            let series = glassy / (1.0 + give * glassy);
-            [series, give * series]
-        } else {
-            [measure.on_switch / rule.compliance(), 0.0]
-        };
+        let [of_force, of_approach] = measure.of_meeting(rule);
         let on_meeting = |u: f64| relative(of_force * u, whole[1]).max(relative(of_approach * u, whole[0]));
         let on_return = on_meeting(outside);
         let error_on_return = on_meeting(rule.compliance() * of_surface);
@@ -181,7 +183,7 @@ impl History {
                 let going_on = if lacking > 0 { to_first * first[k] } else { 0.0 };
                 let bend = (u - u_before) - going_on;
                 if touches && !touched {
-                    // u would have gone on by the polynomial through its last nodes, not by the one found
+                    // u extrapolated through its last nodes
                     let expected = if lacking < 3 { going_on } else { going_on + to_second * second[k] };
                     let (jump, bend) = ((measure.advance)(k) - expected, (u - u_before) - expected);
                     let [kink, with_correction] = kinks.at_end(jump, bend);

@@ -357,7 +357,7 @@ mod tests {
                     (0..part.len()).map(|k| if acts(k) { ((k * k + 3) as f64).sin() } else { 0.0 }).collect();
                 let (mut exact, mut found) = (vec![0.0; field.len()], vec![0.0; field.len()]);
                 kernel.apply(&field, &mut exact, &mut work);
-                work.trade(&mut work_near);
+                work.swap(&mut work_near);
                 near.apply(&field, &mut found, &mut work);
                 let most = exact.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
                 for k in (0..field.len()).filter(|&k| acts(k)) {

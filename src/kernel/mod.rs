@@ -105,9 +105,9 @@ pub struct Workspace(pub(crate) TransformWorkspace);
 
 impl Workspace {
     /// Swaps the buffers, but for those between the passes of a transform, which remain here.
-    pub(crate) fn trade(&mut self, other: &mut Workspace) {
+    pub(crate) fn swap(&mut self, other: &mut Workspace) {
         std::mem::swap(&mut self.0, &mut other.0);
-        self.0.trade_tiles(&mut other.0);
+        self.0.swap_tiles(&mut other.0);
     }
 }
 
@@ -128,8 +128,16 @@ pub(crate) struct LocalKernel {
 pub(crate) struct PeriodInverse {
     operator: SpectralOperator,
     own: TransformWorkspace,
-    /// The stiffness that M has for the mean \[1/m\], and the compliance that its kernel has \[m\].
-    pub(crate) mean: [f64; 2],
+    pub(crate) mean: Mean,
+}
+
+/// What M and its kernel do to the mean of a field.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Mean {
+    /// Of M \[1/m\].
+    pub(crate) stiffness: f64,
+    /// Of its kernel \[m\].
+    pub(crate) compliance: f64,
 }
 
 impl PeriodInverse {
@@ -250,7 +258,7 @@ impl InfluenceKernel {
         let beside = |other: Layout| {
             let of_other = Shares::new(&other, rows);
             let of_other = of_other.as_ref();
-            let work = other.workspace_bytes(of_other) - other.lent_bytes(of_other, (&layout, shares));
+            let work = other.workspace_bytes(of_other) - other.shared_bytes(of_other, (&layout, shares));
             other.operator_bytes(of_other) + work
         };
         let in_gap = if self.periodic == [true; 2] { 1 } else { 2 } * beside(layout.ending(Ends::Closed));
@@ -329,7 +337,7 @@ impl LocalKernel {
     pub(crate) fn inverse(&self) -> (SpectralOperator, TransformWorkspace) {
         let (layout, symbol) = self.whole.inverse(self.rows.cells(), self.folded);
         let inverse = SpectralOperator::new(layout, Shares::new(&layout, &self.rows), symbol);
-        let work = inverse.workspace_beside(&self.operator);
+        let work = inverse.workspace_sharing(&self.operator);
         (inverse, work)
     }
 
@@ -345,9 +353,9 @@ impl LocalKernel {
             let (layout, inverse) = self.whole.inverse(cells, folded);
             (layout, inverse, self.whole.of_wave([0, 0]))
         });
-        let mean = [symbol(0, 0), compliance];
+        let mean = Mean { stiffness: symbol(0, 0), compliance };
         let operator = SpectralOperator::new(layout, Shares::new(&layout, &self.rows), symbol);
-        let own = operator.workspace_beside(&self.operator);
+        let own = operator.workspace_sharing(&self.operator);
         PeriodInverse { operator, own, mean }
     }
 
@@ -356,7 +364,7 @@ impl LocalKernel {
     pub(crate) fn near(&self) -> Option<(LocalKernel, Workspace)> {
         let (layout, symbol) = self.whole.near(self.rows.cells(), self.folded)?;
         let operator = SpectralOperator::new(layout, Shares::new(&layout, &self.rows), symbol);
-        let work = Workspace(operator.workspace_beside(&self.operator));
+        let work = Workspace(operator.workspace_sharing(&self.operator));
         Some((LocalKernel { operator: Arc::new(operator), ..self.clone() }, work))
     }
 

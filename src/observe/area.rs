@@ -21,7 +21,7 @@ const RISES: f64 = 1.0 + 1e-6;
 pub(crate) const REACH: usize = 3;
 
 /// A pressure on a grid or on some of its rows, and the gap.
-pub(crate) struct Pressed<'a> {
+pub(crate) struct PressedCells<'a> {
     pub(crate) grid: &'a Grid,
     /// First row of pressure and gap if they hold some rows of the grid; `None` if they hold all. Rows beyond the
     /// grid belong to the next period, or are empty.
@@ -35,7 +35,7 @@ pub(crate) struct Pressed<'a> {
     pub(crate) extent: Option<Extent>,
 }
 
-impl Pressed<'_> {
+impl PressedCells<'_> {
     /// The contact area \[m²\].
     pub(crate) fn area(&self) -> f64 {
         self.squares(0).map(|row| self.covered_in_row(row)).sum::<f64>() * self.grid.cell_area()

@@ -16,7 +16,7 @@ impl Rows {
         path: &Path,
         write: impl FnOnce(Option<&mut BufWriter<File>>) -> io::Result<()>,
     ) -> Result<()> {
-        self.unless_lost(|| {
+        self.or_loss(|| {
             let part = self.agree(if self.rank() == 0 { Part::create(path).map(Some) } else { Ok(None) })?;
             self.agree(match part {
                 // a file without the rows of a rank that is lost must not be placed

@@ -262,7 +262,7 @@ impl Rows {
     /// Runs `job`, a call of all ranks, and returns its result, or the loss of a rank, in `job` or before it: sums
     /// and gathered values of `job` are NaN then. The loss is returned once. Nothing is sent to other ranks, nor
     /// waited for.
-    pub(crate) fn unless_lost<T>(&self, job: impl FnOnce() -> Result<T>) -> Result<T> {
+    pub(crate) fn or_loss<T>(&self, job: impl FnOnce() -> Result<T>) -> Result<T> {
         let done = job();
         match self.shared.as_ref().and_then(|shared| lock(&shared.lost).take()) {
             Some(loss) => Err(loss.into()),

@@ -13,7 +13,7 @@ use crate::error::{RanksError, Result, count_within};
 /// copies.
 pub struct Threads {
     rank: usize,
-    meeting: Arc<Meeting>,
+    meeting: Arc<Rendezvous>,
 }
 
 impl Threads {
@@ -26,7 +26,7 @@ impl Threads {
     /// If `size` is zero, or more than 1024.
     pub fn run<T: Send>(size: usize, job: impl Fn(Arc<dyn Ranks>) -> T + Sync) -> Result<Vec<T>> {
         count_within("ranks", size, (1..=MOST).contains(&size), "1 to 1024")?;
-        let meeting = Arc::new(Meeting::of(size));
+        let meeting = Arc::new(Rendezvous::of(size));
         let work = |rank: usize| {
             let _leaves = Leaving { rank, meeting: &meeting };
             job(Arc::new(Threads { rank, meeting: Arc::clone(&meeting) }))
@@ -44,7 +44,7 @@ impl Threads {
 /// Marks a rank as gone when it is dropped, as its job ends or panics, and wakes the waiting ranks.
 struct Leaving<'a> {
     rank: usize,
-    meeting: &'a Meeting,
+    meeting: &'a Rendezvous,
 }
 
 impl Drop for Leaving<'_> {
@@ -57,8 +57,8 @@ impl Drop for Leaving<'_> {
 /// Upper limit of threads.
 const MOST: usize = 1024;
 
-/// Meeting point of the threads.
-struct Meeting {
+/// Rendezvous point of the threads.
+struct Rendezvous {
     /// Numbers of each rank. The buffers are kept, so that no meeting allocates that is no larger than one before.
     brought: Vec<Mutex<Brought>>,
     gate: Mutex<Gate>,
@@ -81,10 +81,10 @@ struct Gate {
     left: Option<usize>,
 }
 
-impl Meeting {
-    fn of(size: usize) -> Meeting {
+impl Rendezvous {
+    fn of(size: usize) -> Rendezvous {
         let brought = (0..size).map(|_| Mutex::default()).collect();
-        Meeting { brought, gate: Mutex::default(), opened: Condvar::new() }
+        Rendezvous { brought, gate: Mutex::default(), opened: Condvar::new() }
     }
 
     /// Waits until all ranks are here.

@@ -8,7 +8,7 @@ pub(super) const TICK_SIZE: f64 = 24.0;
 
 /// An axis as drawn. Positions are fractions of its length.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Axis {
+pub(super) struct DrawnAxis {
     /// Name and unit.
     pub(super) label: String,
     /// Positions and texts of the numbers.
@@ -38,9 +38,9 @@ impl Room {
     }
 }
 
-impl Axis {
+impl DrawnAxis {
     /// A linear axis between two values in SI. The unit, or a shared power of ten, is that for values up to `greatest`.
-    pub(super) fn linear(quantity: &Quantity, greatest: f64, ends: [f64; 2], room: Room) -> Axis {
+    pub(super) fn linear(quantity: &Quantity, greatest: f64, ends: [f64; 2], room: Room) -> DrawnAxis {
         let (label, factor) = shared_power(quantity.shown(greatest), greatest);
         let [low, high] = ends.map(|end| end * factor);
         let span = high - low;
@@ -60,12 +60,12 @@ impl Axis {
                 break;
             }
         }
-        Axis { label, ticks, minor: Vec::new(), factor, ends: [low, high], logarithmic: false }
+        DrawnAxis { label, ticks, minor: Vec::new(), factor, ends: [low, high], logarithmic: false }
     }
 
     /// A logarithmic axis between two values in SI. Numbers from 0.001 to 10 000 are written out, in a unit with a
     /// prefix if they are not so short without; others are powers of ten without a prefix.
-    pub(super) fn logarithmic(quantity: &Quantity, ends: [f64; 2], room: Room) -> Axis {
+    pub(super) fn logarithmic(quantity: &Quantity, ends: [f64; 2], room: Room) -> DrawnAxis {
         let powers = |factor: f64| ends.map(|end| (end * factor).log10());
         let is_plain = |factor: f64| powers(factor)[0].ceil() >= -3.0 && powers(factor)[1].floor() <= 4.0;
         let without = quantity.shown(0.0);
@@ -100,7 +100,7 @@ impl Axis {
         } else if per_decade < 100.0 {
             minor.clear();
         }
-        Axis { label, ticks, minor, factor, ends: [low, high], logarithmic: true }
+        DrawnAxis { label, ticks, minor, factor, ends: [low, high], logarithmic: true }
     }
 
     /// The position of a value in SI.
@@ -149,13 +149,13 @@ mod tests {
 
     fn linear(name: &str, unit: &str, ends: [f64; 2]) -> (String, String) {
         let quantity = if unit.is_empty() { Quantity::from(name) } else { Quantity::new(name, unit) };
-        let axis = Axis::linear(&quantity, ends[0].abs().max(ends[1].abs()), ends, UP);
+        let axis = DrawnAxis::linear(&quantity, ends[0].abs().max(ends[1].abs()), ends, UP);
         let texts: Vec<&str> = axis.ticks.iter().map(|tick| tick.1.as_str()).collect();
         (axis.label.clone(), texts.join(" "))
     }
 
     fn logarithmic(ends: [f64; 2], room: Room) -> String {
-        let axis = Axis::logarithmic(&"q".into(), ends, room);
+        let axis = DrawnAxis::logarithmic(&"q".into(), ends, room);
         let texts: Vec<&str> = axis.ticks.iter().map(|tick| tick.1.as_str()).collect();
         texts.join(" ")
     }
@@ -189,13 +189,13 @@ mod tests {
         assert_eq!(logarithmic([0.5e-4, 20.0], UP), "10⁻⁴ 10⁻³ 10⁻² 10⁻¹ 10⁰ 10¹");
         assert_eq!(logarithmic([0.5e-5, 15e-5], UP), "10⁻⁵ 10⁻⁴ 5×10⁻⁶ 2×10⁻⁵ 5×10⁻⁵");
         // a prefix where the numbers are short with it alone
-        let label = |unit, ends| Axis::logarithmic(&Quantity::new("q", unit), ends, UP).label;
+        let label = |unit, ends| DrawnAxis::logarithmic(&Quantity::new("q", unit), ends, UP).label;
         assert_eq!(label("m/s", [0.7e-8, 1.4e-3]), "q [µm/s]");
         assert_eq!(label("s", [0.7e-3, 14.0]), "q [s]");
         assert_eq!(label("s", [0.7e-3, 1.0e6]), "q [s]");
         // only as many as there is room for
         assert_eq!(logarithmic([1e-20, 1e20], ACROSS), "10⁻²⁰ 10⁻¹⁶ 10⁻¹² 10⁻⁸ 10⁻⁴ 10⁰ 10⁴ 10⁸ 10¹² 10¹⁶ 10²⁰");
-        let axis = Axis::logarithmic(&"q".into(), [0.1, 1e3], UP);
+        let axis = DrawnAxis::logarithmic(&"q".into(), [0.1, 1e3], UP);
         assert_eq!(axis.minor.len(), 32);
         assert!((axis.fraction(10.0) - 0.5).abs() < 1e-12);
     }
@@ -205,7 +205,7 @@ mod tests {
         for span in [1.0, 3.7, 12.0, 1234.0, 8.8e4] {
             for length in [40.0, 200.0, 460.0, 1000.0] {
                 let room = Room { length, horizontal: true };
-                let axis = Axis::linear(&"q".into(), span, [-span, span], room);
+                let axis = DrawnAxis::linear(&"q".into(), span, [-span, span], room);
                 let ends: Vec<[f64; 2]> = axis
                     .ticks
                     .iter()

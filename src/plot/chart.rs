@@ -9,7 +9,7 @@ use crate::plot::frame::width_beside;
 use crate::plot::legend::{self, points_along};
 use crate::plot::map::extremes;
 use crate::plot::quantity::drawable_as_power;
-use crate::plot::{Axis, BELOW, Canvas, Color, Frame, Legend, Picture, Quantity, Room, Style, drawable};
+use crate::plot::{BELOW, Canvas, Color, DrawnAxis, Frame, Legend, Picture, Quantity, Room, Style, drawable};
 
 /// Width and height of a chart in pixels.
 const SIZE: [u32; 2] = [1200, 800];
@@ -209,7 +209,7 @@ impl Chart {
     }
 
     /// The axis that contains all points, with a margin, and longer by the share `above` at its upper end.
-    fn axis(&self, axis: usize, room: Room, above: f64) -> Result<Axis> {
+    fn axis(&self, axis: usize, room: Room, above: f64) -> Result<DrawnAxis> {
         let (field, quantity) = [("x of a point in a chart", &self.x), ("y of a point in a chart", &self.y)][axis];
         let logarithmic = self.scale.is_logarithmic()[axis];
         let points = self.curves.iter().flat_map(|curve| self.pieces(curve)).flatten();
@@ -227,28 +227,28 @@ impl Chart {
             } else {
                 [low / 1.5, high * 1.5]
             };
-            return Ok(Axis::logarithmic(quantity, [low, high * (high / low).powf(above)], room));
+            return Ok(DrawnAxis::logarithmic(quantity, [low, high * (high / low).powf(above)], room));
         }
         let greatest = low.abs().max(high.abs());
         // values that are all equal get a range around them
         let span = (high - low).max(1e-9 * greatest);
         let margin = 0.04 * if span > 0.0 { span } else { 1.0 };
         let (low, high) = (if low == 0.0 { 0.0 } else { low - margin }, high + margin);
-        Ok(Axis::linear(quantity, greatest, [low, high + above * (high - low)], room))
+        Ok(DrawnAxis::linear(quantity, greatest, [low, high + above * (high - low)], room))
     }
 }
 
 impl Bar {
     /// The numbers of a bar of this height in pixels.
-    fn axis(&self, length: f64) -> Result<Axis> {
+    fn axis(&self, length: f64) -> Result<DrawnAxis> {
         let [low, high] = self.range;
         let check = if self.logarithmic { drawable_as_power } else { drawable };
         [low, high].into_iter().try_for_each(|end| check("parameter of a family of curves", end).map(drop))?;
         let room = Room { length, horizontal: false };
         Ok(if self.logarithmic {
-            Axis::logarithmic(&self.quantity, self.range, room)
+            DrawnAxis::logarithmic(&self.quantity, self.range, room)
         } else {
-            Axis::linear(&self.quantity, low.abs().max(high.abs()), self.range, room)
+            DrawnAxis::linear(&self.quantity, low.abs().max(high.abs()), self.range, room)
         })
     }
 }

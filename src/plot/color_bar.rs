@@ -1,7 +1,7 @@
 //! The colour bar beside a map or a chart.
 
 use crate::plot::frame::LABEL_SIZE;
-use crate::plot::{Anchor, Axis, Canvas, Color, TICK_SIZE};
+use crate::plot::{Anchor, Canvas, Color, DrawnAxis, TICK_SIZE};
 
 /// Width of a colour bar with its numbers and label in pixels.
 pub(super) const BAR_WIDTH: u32 = 155;
@@ -17,7 +17,7 @@ pub(super) fn draw(
     canvas: &mut Canvas,
     left: f64,
     [top, bottom]: [f64; 2],
-    axis: &Axis,
+    axis: &DrawnAxis,
     color: impl Fn(f64) -> Color,
     beyond: [bool; 2],
 ) {

@@ -1,6 +1,6 @@
 //! The frame of charts and maps: axes, grid and labels around an area.
 
-use crate::plot::{Anchor, Axis, Canvas, Color, TICK_SIZE};
+use crate::plot::{Anchor, Canvas, Color, DrawnAxis, TICK_SIZE};
 
 /// Sizes of the labels of axes and of titles in pixels per em.
 pub(super) const LABEL_SIZE: f64 = 27.0;
@@ -21,11 +21,11 @@ pub(super) struct Frame {
     pub(super) top: f64,
     pub(super) right: f64,
     pub(super) bottom: f64,
-    pub(super) axes: [Axis; 2],
+    pub(super) axes: [DrawnAxis; 2],
 }
 
 /// Width that numbers and label need to the left of a frame in pixels.
-pub(super) fn width_beside(axis: &Axis) -> f64 {
+pub(super) fn width_beside(axis: &DrawnAxis) -> f64 {
     (EDGE + LABEL_SIZE + 2.0 * GAP + axis.widest() + GAP + TICK).ceil()
 }
 

@@ -82,11 +82,11 @@ pub(super) fn draw(canvas: &mut Canvas, entries: &[&Curve], preferred: Legend, f
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plot::axis::{Axis, Room};
+    use crate::plot::axis::{DrawnAxis, Room};
 
     #[test]
     fn the_legend_avoids_the_data() {
-        let axis = |horizontal| Axis::linear(&"q".into(), 1.0, [0.0, 1.0], Room { length: 600.0, horizontal });
+        let axis = |horizontal| DrawnAxis::linear(&"q".into(), 1.0, [0.0, 1.0], Room { length: 600.0, horizontal });
         let frame = Frame { left: 100.0, top: 50.0, right: 1100.0, bottom: 650.0, axes: [axis(true), axis(false)] };
         let size = [300.0, 100.0];
         let line = |from: [f64; 2], to: [f64; 2]| points_along(&[from, to]).collect::<Vec<_>>();

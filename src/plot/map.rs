@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::Grid;
 use crate::error::{Result, exact_length, least_length};
 use crate::plot::color_bar::{self, BAR_WIDTH};
-use crate::plot::{Axis, BELOW, Canvas, Color, ColorScale, Frame, Picture, Quantity, Room, color_scale, drawable};
+use crate::plot::{BELOW, Canvas, Color, ColorScale, DrawnAxis, Frame, Picture, Quantity, Room, color_scale, drawable};
 
 /// Width of the space to the left and to the right of a map and height of that above it in pixels.
 const LEFT: u32 = 115;
@@ -173,7 +173,7 @@ impl Map {
                 let bottom = TOP + f64::from(if shared { tallest } else { height }.max(MIN_BAR));
                 let greatest = map.range[0].abs().max(map.range[1].abs());
                 let room = Room { length: bottom - TOP, horizontal: false };
-                let axis = Axis::linear(&map.quantity, greatest, map.range, room);
+                let axis = DrawnAxis::linear(&map.quantity, greatest, map.range, room);
                 let color = |at: f64| map.colors.color(map.range[0] + at * (map.range[1] - map.range[0]), map.range);
                 color_bar::draw(&mut canvas, f64::from(side), [TOP, bottom], &axis, color, beyond);
             }
@@ -189,7 +189,12 @@ impl Map {
         let half = self.lengths.map(|length| 0.5 * length);
         let axis = |k: usize, length: f64| {
             let [low, high] = [-half[k], half[k]].map(|end| self.middle[k] + end);
-            Axis::linear(&self.axes[k], low.abs().max(high.abs()), [low, high], Room { length, horizontal: k == 0 })
+            DrawnAxis::linear(
+                &self.axes[k],
+                low.abs().max(high.abs()),
+                [low, high],
+                Room { length, horizontal: k == 0 },
+            )
         };
         let left = f64::from(LEFT);
         let axes = [axis(0, width), axis(1, height)];

@@ -73,7 +73,7 @@ pub use map::Map;
 pub use picture::Picture;
 pub use quantity::{Quantity, measure};
 
-use axis::{Axis, Room, TICK_SIZE};
+use axis::{DrawnAxis, Room, TICK_SIZE};
 use canvas::{Anchor, Canvas};
 use frame::{BELOW, Frame};
 use quantity::{color_scale, drawable};

@@ -3,10 +3,11 @@
 use crate::contact::step::Attempt;
 use crate::contact::step::error_in_time::error_in_time;
 use crate::contact::{Step, StepReport, ViscoelasticContact};
-use crate::error::{AdhesionError, Error, Result, StepError};
+use crate::error::{AdhesionError, Error, ErrorKind, Result};
 use crate::events;
 use crate::hereditary::{StepContext, TimeError, WEIGHTS};
 use crate::load::Load;
+use crate::run::Contact;
 use crate::run::control::Course;
 use crate::run::halves::{Divided, Halves, add_work, greater};
 use crate::run::outlook::excess;
@@ -31,110 +32,63 @@ pub(super) fn adaptive_step(
     let ViscoelasticContact { scene, computation, .. } = &*contact;
     let (state, now) = (&computation.state, computation.state.clock.time);
     control.begin(scene, state, histories, until)?;
-    let tolerance = control.solver_tolerance(scene);
-    let before = Span { now, end: course.stop };
-    let touch = if state.is_undisturbed() { control.first_touch(histories, before)? } else { f64::INFINITY };
-    let (kink, mut stop) = (course.kink.min(touch), course.stop.min(touch));
+    let (tolerance, whole) = (control.solver_tolerance(scene), Span { now, end: course.stop });
+    let touch = if state.is_undisturbed() { control.first_touch(histories, whole)? } else { f64::INFINITY };
+    let (kink, stop) = (course.kink.min(touch), course.stop.min(touch));
     let mut loads = std::mem::take(&mut control.loads);
-    let (mut wasted, mut failures, mut tried) = ([0; 2], 0, f64::INFINITY);
+    let mut search =
+        StepSearch { control, course, now, stop, tried: f64::INFINITY, dt: 0.0, failures: 0, wasted: [0; 2] };
     loop {
         let ViscoelasticContact { scene, computation, .. } = &*contact;
-        let state = &computation.state;
-        let mut proposal = control.propose(scene, state, histories, until - now, stop, tried)?;
-        let Proposal { time, unresolved, .. } = proposal;
-        tried = time;
-        histories.loads(&mut loads, |history| history.checked_before(time, scene.ground.attraction.is_some()))?;
+        let (state, control) = (&computation.state, &mut *search.control);
+        let proposal = control.propose(scene, state, histories, until - now, search.stop, search.tried)?;
+        let time = proposal.time;
+        histories.loads(&mut loads, |history| history.checked_before(time, contact.attracts()))?;
         let mut step = contact.request(time, time - now, &loads, tolerance)?;
         step.cancelled = course.cancelled;
-        let dt = step.interval.dt;
-        control.look(histories, Span { now, end: time })?;
-        // what happens at a top of the load within the step would not show at its end
-        if let Some(top) = control.first_top(histories, |_, track| track.is_parted()) {
-            stop = top;
-            continue;
-        }
-        let straying = control.straying(scene, state, histories, |track| !track.is_parted())?;
-        if straying > control.tolerance {
-            control.judge(proposal, dt, straying);
-            continue;
-        }
-        // the path of bodies that stay apart does not matter
-        let apart = control.straying(scene, state, histories, Track::is_parted)?;
-        let outlook = control.outlook(scene, state, &step, course, kink)?;
+        (search.tried, search.dt) = (time, step.interval.dt);
+        let Some(deviations) = search.look(contact, proposal)? else { continue };
+        let outlook = search.control.outlook(scene, state, &step, course, kink)?;
         step.interval.interpolant = scene.ground.settings.adaptive_interpolant();
-        step.tolerance = control.solver_tolerance_before_meeting(scene, &step, &outlook);
-        let Tried { attempt, mut error, excess, halves } =
-            match try_step(contact, control, &mut step, (course, &outlook), [straying, apart], &mut wasted) {
-                Ok(tried) => tried,
-                Err(error) => {
-                    let unsolved = matches!(
-                        error,
-                        Error::Step(StepError::NotConverged { .. })
-                            | Error::Adhesion(AdhesionError::NotConverged { .. } | AdhesionError::FillsGrid { .. })
-                    );
-                    // where the bodies separate within the step, a shorter one shows when
-                    let separates = matches!(error, Error::Adhesion(AdhesionError::PulledOff { .. }));
-                    failures += u32::from(unsolved);
-                    if !(unsolved && failures <= MAX_SOLVER_RETRIES || separates && time - now > outlook.resolution) {
-                        return Err(error);
-                    }
-                    control.shorten(dt);
-                    continue;
-                }
-            };
-        let computed = attempt.computation(&contact.computation);
-        let parts = |body: usize, track: &Track| {
-            track.is_driven && !track.is_apart && !computed.state.attracts && !presses(&contact.scene, computed, body)
+        step.tolerance = search.control.solver_tolerance_before_meeting(scene, &step, &outlook);
+        let mut tried = match search.compute(contact, &mut step, &outlook, deviations) {
+            Ok(tried) => tried,
+            Err(error) if search.may_be_shorter(&error, &outlook) => {
+                search.control.shorten(search.dt);
+                continue;
+            }
+            Err(error) => return Err(error),
         };
-        if let Some(top) = control.first_top(histories, parts) {
-            add_work(&mut wasted, computed);
-            (stop, control.rejected) = (top, control.rejected + 1);
-            continue;
-        }
-        // a jump takes no time: shorter steps would show nothing but its moment
-        let jumps = contact.scene.ground.attraction.is_some()
-            && time - now <= outlook.resolution
-            && error.relative > control.tolerance;
-        if jumps {
-            error.relative = 0.0;
-        }
-        if error.by_kinks && error.relative > control.tolerance || excess > 1.0 {
-            proposal.order = ORDER_OF_KINKS;
-        }
-        // the report gives the error of a step that cannot be shorter
-        let unresolved = unresolved && error.relative.is_finite();
-        if !control.judge(proposal, dt, error.relative) && !unresolved {
-            events::rejected(time, time - now, error.relative, control.tolerance);
-            control.rejected += 1;
-            add_work(&mut wasted, computed);
-            if let Some(divided) = control.halves.as_ref().filter(|_| halves.is_some()) {
-                divided.undo(contact);
-            }
-            continue;
-        }
-        let motion_is_given = !computed.trial.free.iter().any(|freedom| freedom.translation);
-        let rule = computed.state.history.rule();
-        match &halves {
-            Some(errors) => {
-                errors.iter().for_each(|error| control.past.include(rule, 0.5 * dt, error, motion_is_given))
-            }
-            None => control.past.include(rule, dt, &error, motion_is_given),
-        }
-        control.accept(step.interval.reduced, &loads, dt, outlook.is_last, proposal);
-        let mut report = contact.accept(attempt, step, error)?;
-        if halves.is_some() {
-            report.dt = time - now;
-        }
+        let Some(jumps) = search.judge(contact, proposal, &mut tried, &outlook) else { continue };
+        let error = tried.error;
+        let mut report = search.accept(contact, proposal, step, tried, outlook.is_last)?;
         // bodies apart do not respond to a given approach before they touch
         let apart = !loads.iter().any(Load::is_force) && report.contact_cells == 0 && time < touch;
-        control.loads = loads;
+        search.control.loads = loads;
         if jumps || outlook.is_last && !apart {
             contact.computation.state.history.reset_differences();
         }
-        report.convolutions += wasted[0];
-        report.preconditioner_applications += wasted[1];
+        report.dt = time - now;
+        report.convolutions += search.wasted[0];
+        report.preconditioner_applications += search.wasted[1];
         return Ok((report, error));
     }
+}
+
+/// The search for a step that its error allows.
+struct StepSearch<'a> {
+    control: &'a mut StepControl,
+    course: &'a Course<'a>,
+    now: f64,
+    /// The latest end of the step.
+    stop: f64,
+    /// The end of the step that is tried, and its length in reduced time.
+    tried: f64,
+    dt: f64,
+    /// How often the solver has failed to converge.
+    failures: u32,
+    /// The work of steps that do not count.
+    wasted: [usize; 2],
 }
 
 /// A step that was tried.
@@ -147,41 +101,133 @@ struct Tried {
     halves: Option<[TimeError; 2]>,
 }
 
-/// Tries a step, the whole of it, and in two halves where surfaces attract each other, unless the whole errs by too
-/// much. The loads deviate by `straying` from what the step takes them for, and by `apart` those of bodies that are
-/// apart at its start.
-fn try_step(
-    contact: &mut ViscoelasticContact,
-    control: &mut StepControl,
-    step: &mut Step<'_>,
-    (course, outlook): (&Course<'_>, &StepContext),
-    [straying, apart]: [f64; 2],
-    wasted: &mut [usize; 2],
-) -> Result<Tried> {
-    let tried = contact.attempt(step);
-    let ViscoelasticContact { scene, computation, .. } = &*contact;
-    let attempt = tried.inspect_err(|_| add_work(wasted, computation))?;
-    let computed = attempt.computation(computation);
-    let mut error = error_in_time(scene, computed, step, outlook);
-    computed.state.held.region.rows().intact()?;
-    let meets = |(body, track): (usize, &Track)| track.is_parted() && presses(scene, computed, body);
-    let meets = apart > 0.0 && control.tracks.iter().enumerate().any(meets);
-    error.relative = error.relative.max(straying).max(if meets { apart } else { 0.0 });
-    let excess = excess(scene, computed, step.interval.dt);
-    error.relative *= excess;
-    let resolved = step.interval.length > outlook.resolution;
-    if scene.ground.attraction.is_none() || resolved && error.relative > control.tolerance {
-        return Ok(Tried { attempt, error, excess, halves: None });
+impl StepSearch<'_> {
+    /// By how much the loads within a step deviate from what it takes them for, of the bodies whose path matters, and of
+    /// those that are apart; `None` where another step is to be tried.
+    fn look(&mut self, contact: &ViscoelasticContact, proposal: Proposal) -> Result<Option<[f64; 2]>> {
+        let StepSearch { control, course: Course { histories, .. }, now, tried, dt, .. } = self;
+        let (scene, state) = (&contact.scene, &contact.computation.state);
+        control.look(histories, Span { now: *now, end: *tried })?;
+        // what happens at a top of the load within the step would not show at its end
+        if let Some(top) = control.first_top(histories, |_, track| track.is_parted()) {
+            self.stop = top;
+            return Ok(None);
+        }
+        let straying = control.straying(scene, state, histories, |track| !track.is_parted())?;
+        if straying > control.tolerance {
+            control.judge(proposal, *dt, straying);
+            return Ok(None);
+        }
+        Ok(Some([straying, control.straying(scene, state, histories, Track::is_parted)?]))
     }
-    let mut halves = control.halves.take().unwrap_or_else(|| Box::new(Halves::new(&contact.computation.state)));
-    let divided = halves.divide(contact, step, course.histories.first(), outlook, wasted);
-    if divided.is_err() {
-        add_work(wasted, &contact.computation);
-        halves.undo(contact);
+
+    /// Tries a step, the whole of it, and in two halves where surfaces attract each other, unless the whole errs by too
+    /// much. The loads deviate by `straying` from what the step takes them for, and by `apart` those of bodies that are
+    /// apart at its start.
+    fn compute(
+        &mut self,
+        contact: &mut ViscoelasticContact,
+        step: &mut Step<'_>,
+        outlook: &StepContext,
+        [straying, apart]: [f64; 2],
+    ) -> Result<Tried> {
+        let StepSearch { control, course, wasted, .. } = self;
+        let tried = contact.attempt(step);
+        let ViscoelasticContact { scene, computation, .. } = &*contact;
+        let attempt = tried.inspect_err(|_| add_work(wasted, computation))?;
+        let computed = attempt.computation(computation);
+        let mut error = error_in_time(scene, computed, step, outlook);
+        computed.state.held.region.rows().intact()?;
+        let meets = |(body, track): (usize, &Track)| track.is_parted() && presses(scene, computed, body);
+        let meets = apart > 0.0 && control.tracks.iter().enumerate().any(meets);
+        error.relative = error.relative.max(straying).max(if meets { apart } else { 0.0 });
+        let excess = excess(scene, computed, step.interval.dt);
+        error.relative *= excess;
+        let resolved = step.interval.length > outlook.resolution;
+        if !contact.attracts() || resolved && error.relative > control.tolerance {
+            return Ok(Tried { attempt, error, excess, halves: None });
+        }
+        let mut halves = control.halves.take().unwrap_or_else(|| Box::new(Halves::new(&contact.computation.state)));
+        let divided = halves.divide(contact, step, course.histories.first(), outlook, wasted);
+        if divided.is_err() {
+            add_work(wasted, &contact.computation);
+            halves.undo(contact);
+        }
+        control.halves = Some(halves);
+        let Divided { attempt, difference, errors } = divided?;
+        let jumped = contact.passes().is_some_and(|passes| passes.jumped);
+        error.relative = greater(error.relative, difference) * if jumped { WEIGHTS.jumped } else { 1.0 };
+        Ok(Tried { attempt, error, excess, halves: Some(errors) })
     }
-    control.halves = Some(halves);
-    let Divided { attempt, difference, errors } = divided?;
-    let jumped = contact.passes().is_some_and(|passes| passes.jumped);
-    error.relative = greater(error.relative, difference) * if jumped { WEIGHTS.jumped } else { 1.0 };
-    Ok(Tried { attempt, error, excess, halves: Some(errors) })
+
+    /// Whether a shorter step may succeed where this one has failed. Where the bodies separate within it, a shorter one
+    /// shows when.
+    fn may_be_shorter(&mut self, error: &Error, outlook: &StepContext) -> bool {
+        if matches!(error, Error::Adhesion(AdhesionError::PulledOff { .. })) {
+            return self.tried - self.now > outlook.resolution;
+        }
+        let is_unsolved = error.kind() == ErrorKind::Convergence;
+        self.failures += u32::from(is_unsolved);
+        is_unsolved && self.failures <= MAX_SOLVER_RETRIES
+    }
+
+    /// Judges a step that was tried: whether it is the shortest one that shows a jump; `None` where another one is to be
+    /// tried.
+    fn judge(
+        &mut self,
+        contact: &mut ViscoelasticContact,
+        mut proposal: Proposal,
+        tried: &mut Tried,
+        outlook: &StepContext,
+    ) -> Option<bool> {
+        let StepSearch { control, course, wasted, .. } = self;
+        let ViscoelasticContact { scene, computation, .. } = &*contact;
+        let (computed, error) = (tried.attempt.computation(computation), &mut tried.error);
+        let (attracts, length) = (contact.attracts(), self.tried - self.now);
+        let parts = |body: usize, track: &Track| {
+            track.is_driven && !track.is_apart && !attracts && !presses(scene, computed, body)
+        };
+        if let Some(top) = control.first_top(course.histories, parts) {
+            add_work(wasted, computed);
+            (self.stop, control.rejected) = (top, control.rejected + 1);
+            return None;
+        }
+        // a jump takes no time: shorter steps would show nothing but its moment
+        let jumps = attracts && length <= outlook.resolution && error.relative > control.tolerance;
+        if jumps {
+            error.relative = 0.0;
+        }
+        if error.by_kinks && error.relative > control.tolerance || tried.excess > 1.0 {
+            proposal.order = ORDER_OF_KINKS;
+        }
+        // the report gives the error of a step that cannot be shorter
+        if control.judge(proposal, self.dt, error.relative) || proposal.unresolved && error.relative.is_finite() {
+            return Some(jumps);
+        }
+        events::rejected(self.tried, length, error.relative, control.tolerance);
+        control.rejected += 1;
+        add_work(wasted, computed);
+        if let Some(divided) = control.halves.as_ref().filter(|_| tried.halves.is_some()) {
+            divided.undo(contact);
+        }
+        None
+    }
+
+    fn accept(
+        &mut self,
+        contact: &mut ViscoelasticContact,
+        proposal: Proposal,
+        step: Step<'_>,
+        tried: Tried,
+        is_last: bool,
+    ) -> Result<StepReport> {
+        let Tried { attempt, error, halves, .. } = tried;
+        let computed = attempt.computation(&contact.computation);
+        let (rule, given) = (computed.state.history.rule(), !computed.trial.free.iter().any(|free| free.translation));
+        let (errors, length) =
+            halves.as_ref().map_or((std::slice::from_ref(&error), self.dt), |both| (both, 0.5 * self.dt));
+        errors.iter().for_each(|error| self.control.past.include(rule, length, error, given));
+        self.control.accept(step.interval.reduced, step.loads, self.dt, is_last, proposal);
+        contact.accept(attempt, step, error)
+    }
 }

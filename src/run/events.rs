@@ -155,7 +155,8 @@ impl<'a, C: Contact> Run<'a, C> {
         }
         let middle = Look::of(events, &self.sample_within_step(time)?.0)?;
         let ends = [&looks[looks.len() - 1], &middle, &end];
-        let hides = (0..events.len()).any(|k| hides_crossings(ends.map(|look| look.beyond[k])));
+        let beyond = |look: usize, k: usize| ends[look].beyond[k];
+        let hides = (0..events.len()).any(|k| hides_crossings(beyond(0, k), beyond(1, k), beyond(2, k)));
         let halved = if hides { halved + 1 } else { HALVINGS };
         self.look_until(events, looks, middle, halved)?;
         self.look_until(events, looks, end, halved)
@@ -165,7 +166,7 @@ impl<'a, C: Contact> Run<'a, C> {
 /// Whether a quantity with these distances to the value, at both ends of a part of a step and in its middle, may
 /// cross the value more often than they show: where it stays on one side, if it is nearer than it bends, or than a
 /// quarter of its change; else if the parabola through the three turns.
-fn hides_crossings([start, middle, end]: [f64; 3]) -> bool {
+fn hides_crossings(start: f64, middle: f64, end: f64) -> bool {
     let (bend, change) = ((start - 2.0 * middle + end).abs(), (end - start).abs());
     let nearest = start.abs().min(middle.abs()).min(end.abs());
     if (start >= 0.0) == (end >= 0.0) { nearest < bend.max(0.25 * change) } else { 2.0 * bend > change }

@@ -96,7 +96,7 @@ impl Control<ViscoelasticContact> for StepControl {
 
     fn advance(&mut self, contact: &mut ViscoelasticContact, course: &Course<'_>) -> Result<StepReport> {
         let rows = contact.computation.state.held.region.rows();
-        rows.unless_lost(|| {
+        rows.or_loss(|| {
             let (report, error) = match course.given {
                 Some((time, loads)) => contact.given_step(self, course, time, loads)?,
                 None => adaptive_step(contact, self, course)?,
@@ -150,7 +150,7 @@ impl Control<ViscoelasticContact> for StepControl {
     #[cfg(feature = "checkpoint")]
     fn is_due(&self, contact: &ViscoelasticContact, due: bool) -> Result<bool> {
         let rows = contact.computation.state.held.region.rows();
-        rows.unless_lost(|| Ok(rows.any(due)))
+        rows.or_loss(|| Ok(rows.any(due)))
     }
 }
 

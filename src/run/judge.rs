@@ -164,7 +164,7 @@ impl<J> Record<J> {
         J: Judge<C>,
     {
         let (mut loads, mut forces, mut others) = (Vec::new(), false, false);
-        for look in looks(history, [contact.time(), self.until], contact.attracts()) {
+        for look in looks(history, contact.time(), self.until, contact.attracts()) {
             let (time, [before, at]) = look?;
             for load in [before, at].into_iter().skip(usize::from(before == at)) {
                 (forces, others) = (forces || load.is_force(), others || !load.is_force());
@@ -176,7 +176,7 @@ impl<J> Record<J> {
         // of forces or of depths
         self.least_load = if forces != others { f64::EPSILON * self.greatest_load } else { 0.0 };
         if let Some(along) = contact.lateral() {
-            let looks = looks(along, [contact.time(), self.until], true);
+            let looks = looks(along, contact.time(), self.until, true);
             let pairs = looks.map(|look| look.map(|(time, [before, at])| [(time, before.main()), (time, at.main())]));
             let seen = pairs.collect::<Result<Vec<_>>>()?.concat();
             (self.bends_along, self.greatest_along) =

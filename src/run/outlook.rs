@@ -88,7 +88,7 @@ impl StepControl {
         if switch.is_infinite() {
             return Ok([0.0; 2]);
         }
-        let left = scene.reduced_length([time, switch], switch - time)?;
+        let left = scene.reduced_length(time, switch, switch - time)?;
         let compliance = |t: f64| scene.material.contact_compliance(t);
         let glassy = if compliance(0.0) > 0.0 { compliance(0.0) } else { compliance(touch) };
         let responses = [dt, age].map(|length| (compliance(left + length) - compliance(left)) / glassy);

@@ -57,7 +57,7 @@ pub(super) fn rises(scene: &Scene, history: &dyn LoadHistory, touch: f64, times:
             if let Some((start, before)) = last.replace((time, approach)) {
                 again |= approach < before;
                 if approach > before.max(touch) {
-                    let rate = (approach - before) / scene.reduced_length([start, time], time - start)?;
+                    let rate = (approach - before) / scene.reduced_length(start, time, time - start)?;
                     rises.push(Rise { end: time, depth: approach - touch, rate, again, stiffness: 0.0, spring });
                 }
             }

@@ -56,9 +56,9 @@ pub(super) struct RunScale {
 }
 
 /// What a run sees of its load, with both sides of jumps.
-fn seen(history: &dyn LoadHistory, [now, until]: [f64; 2], attracts: bool) -> Result<Vec<(f64, f64)>> {
+fn seen(history: &dyn LoadHistory, now: f64, until: f64, attracts: bool) -> Result<Vec<(f64, f64)>> {
     let mut seen = Vec::new();
-    for look in looks(history, [now, until], attracts) {
+    for look in looks(history, now, until, attracts) {
         let (time, [before, at]) = look?;
         let both = [before, at].into_iter().skip(usize::from(before == at));
         seen.extend(both.map(|load| (time, load.main())));
@@ -80,7 +80,7 @@ impl RunScale {
         let now = state.clock.time;
         let span = until - now;
         let compliance_at = |time: f64| {
-            let age = scene.reduced_length([now, time], time - now)?;
+            let age = scene.reduced_length(now, time, time - now)?;
             Ok::<_, Error>(scene.material.contact_compliance(age.min(scene.material.known_until())))
         };
         let compliance = compliance_at(until)?;
@@ -89,7 +89,7 @@ impl RunScale {
         let decades = (1..=TIMES_PER_DECADE * DECADES)
             .map(|k| now + span * 10f64.powf(-f64::from(k) / f64::from(TIMES_PER_DECADE)));
         let corners: Vec<f64> = history.breakpoints(now).take_while(|&next| next <= until).take(BREAKPOINTS).collect();
-        let seen = seen(history, [now, until], scene.ground.attraction.is_some())?;
+        let seen = seen(history, now, until, state.attracts)?;
         let mut passage = Passage::default();
         scale.bends = bends(&seen);
         passage.show(&seen);
@@ -101,7 +101,7 @@ impl RunScale {
         let mut loads: Vec<(f64, Load)> = Vec::new();
         for time in times {
             for load in [<dyn LoadHistory>::checked_before, <dyn LoadHistory>::checked_at] {
-                let load = load(history, time, scene.ground.attraction.is_some())?;
+                let load = load(history, time, state.attracts)?;
                 scale.include(&load);
                 if !load.is_force() && loads.last().is_some_and(|(_, before)| before.is_force()) {
                     scale.switches.push(time);

@@ -161,7 +161,7 @@ impl StepControl {
             Some(next) => (scene.length_of(clock, next, left)?, next),
             None => {
                 let first = self.first(scene, state, histories, left)?.min(left);
-                (first, scene.reduced_length([now, now + first], first)?)
+                (first, scene.reduced_length(now, now + first, first)?)
             }
         };
         // a jump may come so late that the creep after it is faster than times are resolved
@@ -198,7 +198,7 @@ impl StepControl {
         let longest = before.map_or(Ok(left), |before| scene.length_of(clock, before, left))?;
         for k in 0..=LENGTHS_PER_DECADE * DECADES {
             let dt = longest * 10f64.powf(-f64::from(k) / f64::from(LENGTHS_PER_DECADE));
-            let reduced = scene.reduced_length([now, now + dt], dt)?;
+            let reduced = scene.reduced_length(now, now + dt, dt)?;
             let creep = compliance(reduced);
             let mut deviation = if jumped { (compliance(0.5 * reduced) - 0.5 * (glassy + creep)) / creep } else { 0.0 };
             let bodies = self.tracks.iter().zip(histories.each()).zip(&state.held.loads);

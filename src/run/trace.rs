@@ -18,7 +18,8 @@ pub(crate) const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// The load just before and at ascending times of a run, of its start as it is there.
 pub(crate) fn looks(
     history: &dyn LoadHistory,
-    [start, until]: [f64; 2],
+    start: f64,
+    until: f64,
     attracts: bool,
 ) -> impl Iterator<Item = Result<(f64, [Load; 2])>> {
     let part = move |k: u32| start + (until - start) * f64::from(k) / f64::from(PARTS_OF_RUN);

@@ -6,7 +6,7 @@ use std::sync::{Arc, OnceLock};
 
 use num_complex::Complex64;
 
-use super::coefficients::{Row, Rules};
+use super::coefficients::{RowOfCells, Rules};
 use super::creep::Creep;
 use super::layer_on_base::LayerOnBase;
 use super::operator::{Coefficients, MovingBodies};
@@ -28,7 +28,7 @@ pub(super) struct Bodies {
     /// A layer on a base that creeps otherwise.
     pub(super) layer: Option<LayerOnBase>,
     /// Influences along rows of a motion along either axis.
-    pub(super) rows: [OnceLock<Vec<Row>>; 2],
+    pub(super) rows: [OnceLock<Vec<RowOfCells>>; 2],
     /// The shortest and the longest time at which the materials of the moving pressure were
     /// measured \[s\].
     pub(super) measured: [f64; 2],
@@ -62,7 +62,7 @@ impl Bodies {
         if let Some(lines) = (0..2).find(|&axis| periodic[axis] && cells[axis] == 1) {
             return Ok(1 - lines);
         }
-        coverage::OBLIQUE.unless(|_| velocity[0] != 0.0 && velocity[1] != 0.0)?;
+        coverage::OBLIQUE.refuse_if(|_| velocity[0] != 0.0 && velocity[1] != 0.0)?;
         Ok(usize::from(velocity[0] == 0.0))
     }
 
@@ -101,7 +101,7 @@ impl Bodies {
         let [n, aside] = [grid.cells()[axis], grid.cells()[1 - axis]];
         let rows = self.rows[axis].get_or_init(|| {
             let own = self.kernel.rows_along(axis, self.layer.as_ref().map(|_| 0.0)).unwrap_or_default();
-            own.into_iter().map(|own| Row::new(own, n, grid.spacing()[axis], &rules)).collect()
+            own.into_iter().map(|own| RowOfCells::new(own, n, grid.spacing()[axis], &rules)).collect()
         });
         let mut reaches = self.creep.reaches(speed);
         if self.creep.fluidity() > 0.0 {

@@ -10,7 +10,7 @@ use super::layer_on_base::{LayerOnBase, THINNEST};
 use super::{SteadySliding, gmres};
 use crate::contact::{Builder, Frame, Limits, Scene, Warnings};
 use crate::equilibrium::{Ground, Held, Region};
-use crate::error::{Error, Result, SlidingError, Special, coverage};
+use crate::error::{Result, SlidingError, Special, coverage};
 use crate::fields::View;
 use crate::kernel::HalfSpace;
 use crate::memory;
@@ -53,6 +53,56 @@ fn bytes(cells: [usize; 2], periodic: [bool; 2]) -> u64 {
 
 /// Relative difference of ratios that is rounding.
 const SAME_RATIO: f64 = 1e-6;
+
+fn series(material: &Material) -> Result<Creep> {
+    material.spectrum_for("a motion").map(Creep::Series)
+}
+
+/// How the bodies respond to a steady motion.
+struct CreepInMotion {
+    creep: Creep,
+    measured: [f64; 2],
+    /// The part of the relaxed compliance of points at rest that was not measured.
+    unmeasured_at_rest: f64,
+}
+
+impl CreepInMotion {
+    fn of(material: &Material, motion: Option<CounterMotion>) -> Result<CreepInMotion> {
+        let (pair, [own, counter]) = (material.poisson_ratios().count() > 1, material.apart());
+        if pair && let Some(CounterMotion::Slides) = motion {
+            let (own_creep, resting) = (own.spectrum_for("a motion")?, counter.spectrum_for("a motion")?);
+            coverage::FLOWING_COUNTER.refuse_if(|_| resting.fluidity() > 0.0)?;
+            // its points are at rest under the pressure
+            let relaxed = resting.relaxed();
+            let is_measured = Creep::Series(resting).is_relaxed(counter.measured()[1]);
+            let unmeasured_at_rest = if is_measured { 0.0 } else { relaxed / (relaxed + own_creep.relaxed()) };
+            let glassy = own_creep.glassy() + relaxed;
+            let creep = Creep::Series(CreepSpectrum::new(glassy, own_creep.fluidity(), own_creep.terms())?);
+            return Ok(CreepInMotion { creep, measured: own.measured(), unmeasured_at_rest });
+        }
+        let creeps = |own: CreepSpectrum| own.fluidity() > 0.0 || !own.terms().is_empty();
+        let unknown = pair && motion.is_none() && counter.contact_spectrum()?.is_none_or(creeps);
+        coverage::COUNTER_BODY.refuse_if(|_| unknown)?;
+        Ok(CreepInMotion { creep: series(material)?, measured: material.measured(), unmeasured_at_rest: 0.0 })
+    }
+}
+
+/// The layer of the kernel on a base that creeps otherwise.
+fn on_base(scene: &Scene, creep: &Creep, base: &Material) -> Result<LayerOnBase> {
+    let Scene { ground: Ground { grid, kernel, .. }, material, .. } = scene;
+    let layer = kernel.layer_of().copied().filter(|layer| !layer.is_on_rigid());
+    let layer = layer.ok_or(coverage::BASE_OF_NO_LAYER.error())?;
+    let same = crate::Layer::bonded_to_material(layer.thickness(), material, base)?;
+    let ratio = same.longest_over_half_space() / layer.longest_over_half_space();
+    let other = (ratio - 1.0).abs() > SAME_RATIO || same.base_poisson() != layer.base_poisson();
+    coverage::OTHER_BASE.refuse_if(|_| other)?;
+    let ends = (0..2).filter(|&axis| !kernel.periodic_axes()[axis]);
+    let (thickness, length) = (layer.thickness(), ends.map(|axis| grid.lengths()[axis]).fold(0.0, f64::max));
+    if length > THINNEST * thickness {
+        return Err(SlidingError::ThinLayer { length, thickness, longest: THINNEST * thickness }.into());
+    }
+    Ok(LayerOnBase { layer, own: creep.clone(), base: series(base)?, kernel: kernel.clone() })
+}
 
 impl Builder {
     /// A contact in steady motion, for [`SteadySliding::at`]: it takes the parts of
@@ -120,68 +170,33 @@ impl Builder {
 
     fn sliding(mut self, base: Option<Material>, modulus: Option<Creep>) -> Result<SteadySliding> {
         self.is_covered(Special::SteadyMotion)?;
-        let motion = self.counter_motion;
         self.settings = self.settings.with_symmetry(false).with_window(false).with_frame(Frame::Bodies);
         memory::check("a contact in steady motion", self.sliding_memory()?.into())?;
+        let motion = self.counter_motion;
         let (scene, indenter, missed) = self.parts()?;
         let Scene { ground: Ground { grid, kernel, .. }, material, .. } = &scene;
         let periodic = kernel.periodic_axes();
-        let ends = || (0..2).filter(|&axis| !periodic[axis]);
-        let has_rows = periodic == [true; 2] || ends().any(|axis| kernel.rows_along(axis, Some(0.0)).is_some());
+        let mut ends = (0..2).filter(|&axis| !periodic[axis]);
+        let has_rows = periodic == [true; 2] || ends.any(|axis| kernel.rows_along(axis, Some(0.0)).is_some());
         let jumps = jumps(&indenter.gap().above, grid.cells(), periodic);
         let (by_modulus, pair) = (modulus.is_some(), material.poisson_ratios().count() > 1);
-        coverage::COEFFICIENTS.unless(|_| !has_rows)?;
-        coverage::JUMPING_SHAPE.unless(|_| jumps)?;
-        coverage::MODULUS.unless(|_| by_modulus && periodic != [true; 2])?;
-        coverage::MODULUS_OF_TWO.unless(|_| by_modulus && pair)?;
-        let series = |material: &Material| material.spectrum_for("a motion").map(Creep::Series);
-        let mut unmeasured_at_rest = 0.0;
-        let mut measured = material.measured();
-        let creep = match (modulus, motion) {
-            (Some(modulus), _) => modulus,
-            (None, Some(CounterMotion::Slides)) if pair => {
-                let [own, counter] = material.apart();
-                let (own_creep, resting) = (own.spectrum_for("a motion")?, counter.spectrum_for("a motion")?);
-                coverage::FLOWING_COUNTER.unless(|_| resting.fluidity() > 0.0)?;
-                // its points are at rest under the pressure
-                let relaxed = resting.relaxed();
-                if !Creep::Series(resting).is_relaxed(counter.measured()[1]) {
-                    unmeasured_at_rest = relaxed / (relaxed + own_creep.relaxed());
-                }
-                measured = own.measured();
-                let glassy = own_creep.glassy() + relaxed;
-                Creep::Series(CreepSpectrum::new(glassy, own_creep.fluidity(), own_creep.terms())?)
-            }
-            (None, motion) => {
-                let [_, counter] = material.apart();
-                let creeps = |own: CreepSpectrum| own.fluidity() > 0.0 || !own.terms().is_empty();
-                let unknown = pair && motion.is_none() && counter.contact_spectrum()?.is_none_or(creeps);
-                coverage::COUNTER_BODY.unless(|_| unknown)?;
-                series(material)?
-            }
+        coverage::COEFFICIENTS.refuse_if(|_| !has_rows)?;
+        coverage::JUMPING_SHAPE.refuse_if(|_| jumps)?;
+        coverage::MODULUS.refuse_if(|_| by_modulus && periodic != [true; 2])?;
+        coverage::MODULUS_OF_TWO.refuse_if(|_| by_modulus && pair)?;
+        let CreepInMotion { creep, mut measured, unmeasured_at_rest } = match modulus {
+            Some(creep) => CreepInMotion { creep, measured: material.measured(), unmeasured_at_rest: 0.0 },
+            None => CreepInMotion::of(material, motion)?,
         };
         let flows = creep.fluidity() > 0.0 && kernel.half_space_below() != Some(HalfSpace::LoadedOnGrid);
-        coverage::FLOW.unless(|_| flows)?;
-        let on_base = |base: Material| {
-            let layer = kernel.layer_of().copied().filter(|layer| !layer.is_on_rigid());
-            let layer = layer.ok_or(coverage::BASE_OF_NO_LAYER.error())?;
-            let same = crate::Layer::bonded_to_material(layer.thickness(), material, &base)?;
-            let ratio = same.longest_over_half_space() / layer.longest_over_half_space();
-            let other = (ratio - 1.0).abs() > SAME_RATIO || same.base_poisson() != layer.base_poisson();
-            coverage::OTHER_BASE.unless(|_| other)?;
-            let (thickness, length) = (layer.thickness(), ends().map(|axis| grid.lengths()[axis]).fold(0.0, f64::max));
-            if length > THINNEST * thickness {
-                return Err(SlidingError::ThinLayer { length, thickness, longest: THINNEST * thickness }.into());
-            }
-            Ok::<_, Error>(LayerOnBase { layer, own: creep.clone(), base: series(&base)?, kernel: kernel.clone() })
-        };
+        coverage::FLOW.refuse_if(|_| flows)?;
         let mut warnings = Warnings::empty();
         if let Some(base) = &base {
             let [from, until] = base.measured();
             measured = [measured[0].max(from), measured[1].min(until)];
             warnings = Limits::of(base).warnings(0.0, 0.0);
         }
-        let layer = base.map(on_base).transpose()?;
+        let layer = base.map(|base| on_base(&scene, &creep, &base)).transpose()?;
         let is_relaxed = |own: &Creep| own.is_relaxed(measured[1]);
         let relaxed = is_relaxed(&creep) && layer.as_ref().is_none_or(|layer| is_relaxed(&layer.base));
         let (kernel, rows) = (kernel.clone(), Default::default());

@@ -22,7 +22,7 @@ use crate::quadrature::GaussLegendre;
 
 /// The influence of a cell on a row of points, and its values at the points of the panels: these serve all reaches,
 /// and both sides of the cell.
-pub(super) struct Row {
+pub(super) struct RowOfCells {
     own: kernel::Row,
     /// Cells along the row, and their side \[m\].
     n: usize,
@@ -65,12 +65,12 @@ struct Panel {
     points: usize,
 }
 
-impl Row {
+impl RowOfCells {
     /// A row of n cells of the side d.
-    pub(super) fn new(own: kernel::Row, n: usize, d: f64, rules: &Rules) -> Row {
+    pub(super) fn new(own: kernel::Row, n: usize, d: f64, rules: &Rules) -> RowOfCells {
         let elastic = (0..n).map(|i| (own.influence)(i as f64 * d)).collect();
         let (panels, values, expansions) = (Vec::new(), Vec::new(), OnceLock::new());
-        let mut row = Row { own, n, d, elastic, panels, values, expansions };
+        let mut row = RowOfCells { own, n, d, elastic, panels, values, expansions };
         let mut panels = Vec::new();
         for m in 0..n {
             let begin = m as f64 * d;
@@ -121,7 +121,7 @@ impl Row {
 
     /// S of a reach l at the cells 0 to n − 1, from f at the cells −(n − 1) to n − 1.
     pub(super) fn losses(&self, reach: f64, f: &[f64], rules: &Rules) -> Vec<f64> {
-        let Row { n, d, ref elastic, .. } = *self;
+        let RowOfCells { n, d, ref elastic, .. } = *self;
         let short = (reach < SHORT * d).then(|| self.expansions.get_or_init(|| self.expand(rules)));
         let loss = |m: usize| match short {
             Some(orders) if reach < EXPANDED * self.distance(m) => {
@@ -135,7 +135,7 @@ impl Row {
     /// (2m)! times the coefficients of s^(2m) in K(x) − ½ (K(x + s) + K(x − s)), m = 1, 2, 3, at each cell: by
     /// interpolation between points whose spacing is as many cells as fit, or less than one beside the source.
     fn expand(&self, rules: &Rules) -> Vec<[f64; ORDERS]> {
-        let Row { n, d, ref elastic, ref own, .. } = *self;
+        let RowOfCells { n, d, ref elastic, ref own, .. } = *self;
         let stride = |m: usize| ((self.distance(m) / (SPACINGS * d)) as usize).min(n / (2 * SIDE));
         let last = (0..n).map(|m| m + SIDE * stride(m)).max().unwrap_or(0);
         let beyond: Vec<f64> = (n..=last).map(|k| (own.influence)(k as f64 * d)).collect();
@@ -169,7 +169,7 @@ impl Row {
 
     /// f of each of the `reaches` l at the cells −(n − 1) to n − 1.
     pub(super) fn terms(&self, reaches: &[f64], rules: &Rules) -> Vec<Vec<f64>> {
-        let Row { n, d, .. } = *self;
+        let RowOfCells { n, d, .. } = *self;
         let mut ahead = vec![vec![0.0; n]; reaches.len()];
         let mut behind = ahead.clone();
         let mut weights: Vec<Vec<[Vec<f64>; 2]>> = Vec::new();

@@ -38,7 +38,7 @@ const LEAST: f64 = 4.0 * f64::EPSILON;
 
 /// Gap and load.
 #[derive(Clone, Copy)]
-pub(super) struct Problem<'a> {
+pub(super) struct SlidingProblem<'a> {
     pub(super) grid: &'a Grid,
     /// The gap before the bodies deform \[m\], less the prescribed motion; +∞ where there is no surface.
     pub(super) gap: &'a [f64],
@@ -52,7 +52,7 @@ pub(super) struct Problem<'a> {
 
 /// The state of a contact problem.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Found {
+pub(super) struct FoundMotion {
     pub(super) pressure: Vec<f64>,
     pub(super) displacement: Vec<f64>,
     /// The free part of the motion.
@@ -65,15 +65,20 @@ pub(super) struct Found {
     pub(super) converged: bool,
 }
 
-impl Found {
+impl FoundMotion {
     /// Bodies that do not press on each other.
-    pub(super) fn apart(cells: usize) -> Found {
-        Found { pressure: vec![0.0; cells], displacement: vec![0.0; cells], converged: true, ..Found::default() }
+    pub(super) fn apart(cells: usize) -> FoundMotion {
+        FoundMotion {
+            pressure: vec![0.0; cells],
+            displacement: vec![0.0; cells],
+            converged: true,
+            ..FoundMotion::default()
+        }
     }
 }
 
 /// A set of cells, and the free motion on it with its balance.
-struct Balance<'a> {
+struct SetBalance<'a> {
     set: Vec<usize>,
     modes: Modes<'a>,
     /// The modes on the cells of the set, and their products.
@@ -81,15 +86,15 @@ struct Balance<'a> {
     gram: Gram,
 }
 
-impl<'a> Balance<'a> {
-    fn new(problem: &Problem<'a>, set: Vec<usize>) -> Balance<'a> {
+impl<'a> SetBalance<'a> {
+    fn new(problem: &SlidingProblem<'a>, set: Vec<usize>) -> SetBalance<'a> {
         let modes = Modes::new(problem.grid, &Rows::all(problem.grid.cells()), problem.free);
         let values: Vec<_> = set.iter().map(|&k| modes.at(k)).collect();
         let mut gram = Gram::default();
         for of in &values {
             (0..9).for_each(|n| gram.entries[n / 3][n % 3] += of[n / 3] * of[n % 3]);
         }
-        Balance { set, modes, values, gram }
+        SetBalance { set, modes, values, gram }
     }
 
     /// Adds the motion to a field on the set that brings its force and moments to these sums, and returns it.
@@ -130,13 +135,36 @@ impl<'a> Balance<'a> {
     }
 }
 
+/// Cells that leave a set, with their pressures, and others that join, with their heights.
+struct Changes {
+    leave: Vec<(f64, usize)>,
+    join: Vec<(f64, usize)>,
+}
+
+impl Changes {
+    fn of(&self, pressed: &[bool]) -> Vec<bool> {
+        let mut next = pressed.to_vec();
+        self.leave.iter().for_each(|&(_, k)| next[k] = false);
+        self.join.iter().for_each(|&(_, k)| next[k] = true);
+        next
+    }
+
+    /// Where a set comes back, the worse half changes.
+    fn keep_worse_half(&mut self) {
+        for own in [&mut self.leave, &mut self.join] {
+            own.sort_by(|a, b| a.0.total_cmp(&b.0));
+            own.truncate(own.len().div_ceil(2));
+        }
+    }
+}
+
 /// The least and the greatest finite value.
 fn range(values: &[f64]) -> [f64; 2] {
     let finite = || values.iter().copied().filter(|value| value.is_finite());
     [finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max)]
 }
 
-impl Problem<'_> {
+impl SlidingProblem<'_> {
     /// Whether another thread ends the search.
     pub(super) fn is_cancelled(&self) -> bool {
         self.cancelled.is_some_and(|flag| flag.load(Ordering::Relaxed))
@@ -147,16 +175,16 @@ impl Problem<'_> {
     /// A primal–dual active set: on each set of cells the pressure follows from a linear equation, which GMRES solves
     /// with the inverse of the bodies' response, restricted to the set, as preconditioner. Cells that pull leave the
     /// set, cells that penetrate join.
-    pub(super) fn solve(&self, bodies: &mut MovingBodies, guess: &[f64]) -> Found {
-        let Problem { gap, tolerance, grid, free, .. } = *self;
-        let (cells, n2) = (gap.len(), grid.cells()[1]);
+    pub(super) fn solve(&self, bodies: &mut MovingBodies, guess: &[f64]) -> FoundMotion {
+        let SlidingProblem { gap, tolerance, free, .. } = *self;
+        let cells = gap.len();
         let mut pressed: Vec<bool> = guess.iter().map(|&p| p > 0.0).collect();
         if !pressed.contains(&true) {
             pressed = self.lowest();
         }
         let compliance = bodies.greatest_compliance();
-        let mut found = Found { pressure: guess.to_vec(), ..Found::default() };
-        let (hasher, mut tried, mut stands) = (BuildHasherDefault::<DefaultHasher>::default(), HashSet::new(), false);
+        let mut found = FoundMotion { pressure: guess.to_vec(), ..FoundMotion::default() };
+        let (mut tried, mut stands) = (HashSet::new(), false);
         while found.sets < MOST_SETS && !self.is_cancelled() {
             found.sets += 1;
             if !pressed.contains(&true) {
@@ -165,21 +193,11 @@ impl Problem<'_> {
                     // upright if nothing touches then
                     let upright = gap.iter().all(|&h| h >= 0.0);
                     let motion = if upright { RigidMotion::default() } else { support.tilt };
-                    return Found { sets: found.sets, motion, ..Found::apart(cells) };
+                    return FoundMotion { sets: found.sets, motion, ..FoundMotion::apart(cells) };
                 }
                 support.cells.iter().for_each(|&k| pressed[k] = true);
             }
-            let mut balance = Balance::new(self, (0..cells).filter(|&k| pressed[k]).collect());
-            let mut p = balance.of(&found.pressure);
-            let load = balance.modes.load().map(|unit| unit * free.total);
-            balance.bring(&mut p, load);
-            if free.tilts() && !balance.holds(&p, free.total, self.tolerance) {
-                // too few cells to balance the load, or all on a line
-                self.support().cells.iter().for_each(|&k| pressed[k] = true);
-                balance = Balance::new(self, (0..cells).filter(|&k| pressed[k]).collect());
-                p = balance.of(&found.pressure);
-                balance.bring(&mut p, load);
-            }
+            let (balance, mut p) = self.balance(&mut pressed, &found.pressure);
             found.displacement = bodies.displacement(&balance.field(&p, cells));
             let least = LEAST * compliance * p.iter().fold(0.0_f64, |most, p| most.max(p.abs()));
             let unit = self.unit(&balance, &found.displacement, least);
@@ -189,20 +207,15 @@ impl Problem<'_> {
             let left = balance.rms(&residual);
             let over_unit = |length: f64| if length > 0.0 { length / unit } else { 0.0 };
             (found.residual, found.rounding) = (over_unit(left), over_unit(least));
-            let height = |k: usize| found.displacement[k] + gap[k] - found.motion.at(grid.center(k / n2, k % n2));
-            let most = p.iter().fold(0.0_f64, |most, p| most.max(p.abs()));
-            let pulls = p.iter().zip(&balance.set).map(|(p, k)| (*p, *k)).filter(|(p, _)| *p < -ROUNDING * most);
-            let deep = -CERTAIN * allowed.max(left);
-            let outside = (0..cells).filter(|&k| !pressed[k]).map(|k| (height(k), k));
-            let mut changes: [Vec<(f64, usize)>; 2] = [pulls.collect(), outside.filter(|(h, _)| *h < deep).collect()];
+            let mut changes = self.changes(&balance, &p, &found, &pressed, CERTAIN * allowed.max(left));
             // until the set stands, cells in doubt leave only if no other joins, or if many do: else they come back
-            if !stands && !changes[1].is_empty() && changes[0].len() < p.len() / MANY {
+            if !stands && !changes.join.is_empty() && changes.leave.len() < p.len() / MANY {
                 let doubt = balance.rms(&balance.of(&bodies.pressure(&balance.field(&residual, cells))));
-                changes[0].retain(|(p, _)| *p < -doubt);
+                changes.leave.retain(|(p, _)| *p < -doubt);
             }
             p.iter_mut().for_each(|p| *p = p.max(0.0));
             found.pressure = balance.field(&p, cells);
-            if changes.iter().all(Vec::is_empty) {
+            if changes.leave.is_empty() && changes.join.is_empty() {
                 let balanced = || balance.holds(&balance.of(&found.pressure), free.total, tolerance);
                 found.converged = left <= BELOW * tolerance * unit && (!free.moves() || balanced());
                 if found.converged || stands {
@@ -211,23 +224,48 @@ impl Problem<'_> {
                 stands = true;
                 continue;
             }
-            let changed = |changes: &[Vec<(f64, usize)>; 2]| {
-                let mut next = pressed.clone();
-                (0..2).for_each(|kind| changes[kind].iter().for_each(|&(_, k)| next[k] = kind == 1));
-                next
-            };
-            let mut next = changed(&changes);
-            if !tried.insert(hasher.hash_one(&next)) {
-                // where a set comes back, the worse half changes
-                for own in &mut changes {
-                    own.sort_by(|a, b| a.0.total_cmp(&b.0));
-                    own.truncate(own.len().div_ceil(2));
-                }
-                next = changed(&changes);
+            let mut next = changes.of(&pressed);
+            if !tried.insert(BuildHasherDefault::<DefaultHasher>::default().hash_one(&next)) {
+                changes.keep_worse_half();
+                next = changes.of(&pressed);
             }
             pressed = next;
         }
         found
+    }
+
+    /// The balance on the pressed cells, and the pressure on them that carries the load. Cells that cannot carry it, too
+    /// few or all on a line, get those of the support.
+    fn balance(&self, pressed: &mut [bool], pressure: &[f64]) -> (SetBalance<'_>, Vec<f64>) {
+        let on = |pressed: &[bool]| {
+            let balance = SetBalance::new(self, (0..pressed.len()).filter(|&k| pressed[k]).collect());
+            let mut p = balance.of(pressure);
+            balance.bring(&mut p, balance.modes.load().map(|unit| unit * self.free.total));
+            (balance, p)
+        };
+        let (balance, p) = on(pressed);
+        if !self.free.tilts() || balance.holds(&p, self.free.total, self.tolerance) {
+            return (balance, p);
+        }
+        self.support().cells.iter().for_each(|&k| pressed[k] = true);
+        on(pressed)
+    }
+
+    /// The cells of the set that pull, and those outside that are deeper than `certain`.
+    fn changes(
+        &self,
+        balance: &SetBalance<'_>,
+        p: &[f64],
+        found: &FoundMotion,
+        pressed: &[bool],
+        certain: f64,
+    ) -> Changes {
+        let n2 = self.grid.cells()[1];
+        let height = |k: usize| found.displacement[k] + self.gap[k] - found.motion.at(self.grid.center(k / n2, k % n2));
+        let most = p.iter().fold(0.0_f64, |most, p| most.max(p.abs()));
+        let pulls = p.iter().zip(&balance.set).map(|(p, k)| (*p, *k)).filter(|(p, _)| *p < -ROUNDING * most);
+        let outside = (0..pressed.len()).filter(|&k| !pressed[k]).map(|k| (height(k), k));
+        Changes { leave: pulls.collect(), join: outside.filter(|(h, _)| *h < -certain).collect() }
     }
 
     /// Solves for the pressure on a set, of which the displacement is known, down to the root mean square of the
@@ -235,12 +273,12 @@ impl Problem<'_> {
     /// displacement and motion.
     fn solve_on(
         &self,
-        balance: &Balance<'_>,
+        balance: &SetBalance<'_>,
         allowed: f64,
         part: f64,
         bodies: &mut MovingBodies,
         pressure: &mut [f64],
-        found: &mut Found,
+        found: &mut FoundMotion,
     ) -> Vec<f64> {
         let (cells, mut goal) = (self.gap.len(), 0.0);
         let mut cycle = 0;
@@ -270,7 +308,7 @@ impl Problem<'_> {
     /// The length by which residuals are measured: the root mean square of the gap that the contact closes, or of a
     /// small part of all gaps where the contact is flat, and of the displacement, where a face has no other gap; its
     /// rounding is `least`.
-    fn unit(&self, balance: &Balance<'_>, displacement: &[f64], least: f64) -> f64 {
+    fn unit(&self, balance: &SetBalance<'_>, displacement: &[f64], least: f64) -> f64 {
         let mut heights = balance.of(self.gap);
         balance.bring(&mut heights, [0.0; 3]);
         let [low, high] = range(self.gap);

@@ -16,7 +16,7 @@ use std::sync::Arc;
 use faer::Mat;
 use num_complex::Complex64;
 
-use super::coefficients::{Row, Rules};
+use super::coefficients::{RowOfCells, Rules};
 use super::creep::Creep;
 use super::operator::Coefficients;
 use crate::Layer;
@@ -155,7 +155,7 @@ impl LayerOnBase {
         let less = self.own.reaches(speed).into_iter().map(|(compliance, reach)| (-compliance, reach));
         let reaches: Vec<_> = self.base.reaches(speed).into_iter().chain(less).collect();
         for (j, row) in self.below(axis).into_iter().enumerate() {
-            out.add(j, &Row::new(row, n, d, rules), &reaches, rules);
+            out.add(j, &RowOfCells::new(row, n, d, rules), &reaches, rules);
         }
         let along = self.nodes(axis, speed);
         let aside = self.nodes(1 - axis, speed);

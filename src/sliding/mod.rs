@@ -40,7 +40,7 @@ use crate::geometry::Missed;
 use crate::load::Load;
 use crate::solver::{Freedom, RigidMotion};
 use bodies::Bodies;
-use contact_problem::{Found, Problem};
+use contact_problem::{FoundMotion, SlidingProblem};
 use operator::MovingBodies;
 
 /// A contact that moves steadily over creeping bodies, made by
@@ -128,7 +128,7 @@ impl SteadySliding {
     pub fn at(&mut self, velocity: [f64; 2], load: Load) -> Result<SlidingReport> {
         finite("velocity along x1", velocity[0])?;
         finite("velocity along x2", velocity[1])?;
-        coverage::SPRING.unless(|_| matches!(load, Load::Spring { .. }))?;
+        coverage::SPRING.refuse_if(|_| matches!(load, Load::Spring { .. }))?;
         let (free, lowered) = self.freedom(load)?;
         let mut bodies = self.moving(velocity, load)?;
         let ground = &self.scene.ground;
@@ -143,13 +143,13 @@ impl SteadySliding {
             return Err(Error::Step(StepError::BeyondFullContact { time: 0.0, approach, greatest: approach + mean }));
         }
         let cancelled = self.cancelled.as_deref();
-        let problem = Problem { grid: &grid, gap: &heights, free, tolerance, cancelled };
+        let problem = SlidingProblem { grid: &grid, gap: &heights, free, tolerance, cancelled };
         let found = if free.translation && free.total == 0.0 {
-            Found::apart(heights.len())
+            FoundMotion::apart(heights.len())
         } else {
             problem.search(&mut bodies, &self.held.current.solution.pressure)
         };
-        let Found { pressure, mut displacement, mut motion, residual, rounding, sets, converged } = found;
+        let FoundMotion { pressure, mut displacement, mut motion, residual, rounding, sets, converged } = found;
         if problem.is_cancelled() {
             return Err(Error::Cancelled { what: "a steady motion" });
         }
@@ -222,14 +222,14 @@ impl SteadySliding {
     fn moving(&self, velocity: [f64; 2], load: Load) -> Result<MovingBodies> {
         let (kernel, creep, forced) = (&self.scene.ground.kernel, &self.bodies.creep, load.is_force());
         let drifts = creep.fluidity() > 0.0 && !(forced && velocity != [0.0; 2]);
-        coverage::DRIFT.unless(|_| drifts)?;
+        coverage::DRIFT.refuse_if(|_| drifts)?;
         let bodies = self.bodies.moving(velocity)?;
         let (axis, lengths) = (self.bodies.axis(velocity).unwrap_or(0), self.scene.ground.grid.lengths());
         let speed = if kernel.periodic_axes()[axis] { 0.0 } else { velocity[axis].abs() };
         let all = [Some(creep), self.bodies.layer.as_ref().map(|layer| &layer.base)].into_iter().flatten();
         let farthest = all.flat_map(|own| own.reaches(speed)).map(|(_, reach)| reach).fold(0.0, f64::max);
         let near = !forced && kernel.datum().is_some_and(|datum| datum < lengths[axis] + farthest);
-        coverage::NEAR_DATUM.unless(|_| near)?;
+        coverage::NEAR_DATUM.refuse_if(|_| near)?;
         Ok(bodies)
     }
 

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use num_complex::Complex64;
 
-use super::coefficients::{Row, Rules};
+use super::coefficients::{RowOfCells, Rules};
 use crate::fft::RealPlane;
 use crate::kernel::{fast_length, waves_at};
 
@@ -50,7 +50,7 @@ impl Coefficients {
 
     /// Adds the influence of a row, of compliances with their reaches l \[m\]: C K where l is 0, else C f, which
     /// resists by C S.
-    pub(super) fn add(&mut self, j: usize, row: &Row, creep: &[(f64, f64)], rules: &Rules) {
+    pub(super) fn add(&mut self, j: usize, row: &RowOfCells, creep: &[(f64, f64)], rules: &Rules) {
         let (at_once, moving): (Vec<_>, Vec<_>) = creep.iter().partition(|(_, reach)| *reach == 0.0);
         let at_once: f64 = at_once.iter().map(|(compliance, _)| compliance).sum();
         // f is nothing at so great a speed that the tail has no end

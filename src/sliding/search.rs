@@ -1,6 +1,6 @@
 //! Where the search for a state of contact begins.
 
-use super::contact_problem::{Found, Problem};
+use super::contact_problem::{FoundMotion, SlidingProblem};
 use super::operator::MovingBodies;
 use crate::Grid;
 use crate::solver::Freedom;
@@ -16,12 +16,12 @@ const LEAST_STEP: f64 = 1e-3;
 /// Springs of this part of the least compliance of any wave change nothing.
 const NEGLIGIBLE: f64 = 1e-3;
 
-impl Problem<'_> {
+impl SlidingProblem<'_> {
     /// The state, from the state of a coarser mesh, else from the pressure `before`, else from the state of the
     /// symmetric part of the response: in slow motion a set would grow by one row of cells at a time. Where sets come
     /// back, springs on the cells, which press independently of each other, lead to it: each set that stands changes
     /// little under somewhat stiffer springs.
-    pub(super) fn search(&self, bodies: &mut MovingBodies, before: &[f64]) -> Found {
+    pub(super) fn search(&self, bodies: &mut MovingBodies, before: &[f64]) -> FoundMotion {
         let coarse = self.on_coarser(bodies, before);
         let first = coarse.as_deref().unwrap_or(before);
         let mut sets = 0;
@@ -44,7 +44,7 @@ impl Problem<'_> {
                 None => self.solve(bodies, from),
             };
             sets += found.sets;
-            Found { sets, ..found }
+            FoundMotion { sets, ..found }
         };
         let symmetric = bodies.with_skew(0.0);
         let start = solve(bodies, Some(symmetric), &nowhere);
@@ -59,7 +59,7 @@ impl Problem<'_> {
             let is_last = softer.is_none();
             let found = solve(bodies, softer, &last);
             if is_last && found.converged || step < LEAST_STEP || self.is_cancelled() {
-                return Found { converged: is_last && found.converged, ..found };
+                return FoundMotion { converged: is_last && found.converged, ..found };
             }
             if found.converged {
                 (last, step) = (found.pressure, 2.0 * step);
@@ -87,7 +87,7 @@ impl Problem<'_> {
         };
         let (mut coarser, gap) = (bodies.coarser(), mean(self.gap));
         let free = Freedom { total: 0.25 * self.free.total, ..self.free };
-        let problem = Problem { grid: &grid, gap: &gap, free, tolerance: self.tolerance.max(ROUGHLY), ..*self };
+        let problem = SlidingProblem { grid: &grid, gap: &gap, free, tolerance: self.tolerance.max(ROUGHLY), ..*self };
         let found = problem.search(&mut coarser, &mean(before));
         bodies.transforms += coarser.transforms.div_ceil(4);
         Some((0..before.len()).map(|k| found.pressure[coarse_of(k)]).collect())

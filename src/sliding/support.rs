@@ -1,6 +1,6 @@
 //! The cells on which a rigid body rests before the bodies deform.
 
-use super::contact_problem::Problem;
+use super::contact_problem::SlidingProblem;
 use crate::linalg;
 use crate::parallel::Rows;
 use crate::solver::{Freedom, ModeCoefficients, Modes, RigidMotion, dot};
@@ -24,7 +24,7 @@ const ROUNDING: f64 = 1e-12;
 /// (R. G. Bland, Math. Oper. Res. 2, 1977); the search ends at the second number.
 const EXCHANGES: [usize; 2] = [60, 1000];
 
-impl Problem<'_> {
+impl SlidingProblem<'_> {
     /// The lowest plane ω + α·x below the gap that is highest at the load point, and the cells that it touches: the
     /// linear program min Σ p h for p ≥ 0 with the force 1 at the load point, by the simplex method.
     pub(super) fn support(&self) -> Support {

@@ -176,42 +176,15 @@ impl ContactSet {
         if !problem.bodies[body].moves() {
             return Some(ModeCoefficients::default());
         }
-        let (rows, modes, pieces) = (problem.rows(), problem.modes(body), |band| self.pieces(problem, body, band));
+        let (rows, modes) = (problem.rows(), problem.modes(body));
         let wanted = modes.load().map(|share| share * modes.freedom.total);
-        let within = |y: [f64; 3], band: Range<usize>| {
-            let (mut gram, mut sums, mut value) = (Gram::default(), [0.0; 3], 0.0);
-            // piece by piece, so that rounding does not grow with the number of cells
-            for piece in pieces(band) {
-                let middle = 0.5 * (piece.len() - 1) as f64;
-                let line = modes.line(piece.start).from(middle);
-                let [start, slope] = line.of(ModeCoefficients(y));
-                let (mut weights, mut pressures) = ([0.0; 3], [0.0; 2]);
-                for (j, k) in piece.enumerate() {
-                    let (j, w) = (j as f64 - middle, weight(k));
-                    let moved = start + slope * j;
-                    let p = base(k) + w * moved;
-                    if p > 0.0 {
-                        weights = [weights[0] + w, weights[1] + w * j, weights[2] + w * j * j];
-                        pressures = [pressures[0] + p, pressures[1] + p * j];
-                        // without weight p does not depend on y
-                        value += if w > 0.0 { 0.5 * p * p / w } else { p * moved };
-                    }
-                }
-                let ([weight, moment, square], [p, p_moment]) = (weights, pressures);
-                gram.add(&line, weight, moment, square);
-                let part = line.sums(p, p_moment);
-                (0..3).for_each(|m| sums[m] += part[m]);
-            }
-            let [a, b, c] = gram.entries;
-            [a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2], sums[0], sums[1], sums[2], value]
-        };
         let evaluate = |y: [f64; 3]| {
-            let found = rows.merge(|band| within(y, band), sum::add);
+            let found = rows.merge(|band| self.clipped(problem, body, band, y, &base, &weight), sum::add);
             let gram = Gram { entries: [0, 3, 6].map(|n| [found[n], found[n + 1], found[n + 2]]) };
             (gram, [0, 1, 2].map(|m| found[9 + m] - wanted[m]), found[12] - dot(wanted, y))
         };
         // in these units a moment is at most the moment of the whole force at the end of the grid
-        let size = rows.sum_of(|band| pieces(band).flatten().map(|k| base(k).abs()).sum()).max(wanted[0].abs());
+        let size = self.sum_of(problem, body, |k| base(k).abs()).max(wanted[0].abs());
         if size == 0.0 {
             return Some(ModeCoefficients::default());
         }
@@ -238,6 +211,44 @@ impl ContactSet {
             (y, (gram, sums, value)) = (next, state);
         }
         sums.iter().all(|sum| sum.abs() <= 1e-12 * size).then_some(ModeCoefficients(y))
+    }
+
+    /// The products of the modes, the loads, and the convex value of the pressures max(0, base + weight · B y) on the
+    /// cells of a band: 9, 3 and 1 sums.
+    fn clipped(
+        &self,
+        problem: &Problem<'_>,
+        body: usize,
+        band: Range<usize>,
+        y: [f64; 3],
+        base: impl Fn(usize) -> f64,
+        weight: impl Fn(usize) -> f64,
+    ) -> [f64; 13] {
+        let (modes, mut gram, mut sums, mut value) = (problem.modes(body), Gram::default(), [0.0; 3], 0.0);
+        // piece by piece, so that rounding does not grow with the number of cells
+        for piece in self.pieces(problem, body, band) {
+            let middle = 0.5 * (piece.len() - 1) as f64;
+            let line = modes.line(piece.start).from(middle);
+            let [start, slope] = line.of(ModeCoefficients(y));
+            let (mut weights, mut pressures) = ([0.0; 3], [0.0; 2]);
+            for (j, k) in piece.enumerate() {
+                let (j, w) = (j as f64 - middle, weight(k));
+                let moved = start + slope * j;
+                let p = base(k) + w * moved;
+                if p > 0.0 {
+                    weights = [weights[0] + w, weights[1] + w * j, weights[2] + w * j * j];
+                    pressures = [pressures[0] + p, pressures[1] + p * j];
+                    // without weight p does not depend on y
+                    value += if w > 0.0 { 0.5 * p * p / w } else { p * moved };
+                }
+            }
+            let ([weight, moment, square], [p, p_moment]) = (weights, pressures);
+            gram.add(&line, weight, moment, square);
+            let part = line.sums(p, p_moment);
+            (0..3).for_each(|m| sums[m] += part[m]);
+        }
+        let [a, b, c] = gram.entries;
+        [a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2], sums[0], sums[1], sums[2], value]
     }
 
     /// Sets the contact to the cells with positive pressure.

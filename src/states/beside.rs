@@ -10,9 +10,9 @@ use crate::contact::ViscoelasticContact;
 use crate::error::{Error, Result};
 use crate::hereditary::Interpolant;
 use crate::load::{Load, LoadHistory, Tilt};
-use crate::states::contacts::{Contacts, Solved};
+use crate::states::contacts::{Contacts, SolvedContact};
 use crate::states::reach::{Loading, MARGIN, greatest, sampled, states_of};
-use crate::states::repeated::{Found, Repeated};
+use crate::states::repeated::{GradedRun, StateAt};
 use crate::states::solved_curve::SolvedCurve;
 
 /// Levels of the first elastic contacts, from the greatest of the run: so many, each over the next.
@@ -29,8 +29,8 @@ const MOST_ATTEMPTS: u32 = 12;
 
 /// The fields of a run in space.
 #[derive(Debug)]
-pub(super) struct Beside {
-    repeated: Repeated,
+pub(super) struct FieldsByLevels {
+    repeated: GradedRun,
     pub(super) curve: SolvedCurve,
 }
 
@@ -43,7 +43,7 @@ pub(crate) struct FoundPressure {
     pub(crate) spent: [usize; 2],
 }
 
-impl Beside {
+impl FieldsByLevels {
     /// For a run from undisturbed bodies at a `start`, with steps of this kind; `None` where levels give no field:
     /// tilts change, or are free under a given approach, the material has no series, or nothing presses.
     /// [`StatesError::Shrinks`](crate::states::StatesError::Shrinks) where an elastic contact shrinks as its load
@@ -53,7 +53,7 @@ impl Beside {
         course: &Loading<'_>,
         accuracy: f64,
         (interpolant, start): (Interpolant, f64),
-    ) -> Result<Option<Beside>> {
+    ) -> Result<Option<FieldsByLevels>> {
         let all = sampled(course.history, [start, course.until])?;
         let tilt = all[0].tilt();
         let (by_force, is_free) =
@@ -71,7 +71,7 @@ impl Beside {
         let mut top = 0.0_f64;
         if by_force {
             let origin = course.undisturbed(&states_of(tilt)?, interpolant, start)?;
-            top = MARGIN * Repeated::new(origin, course.history, course.until, (by_force, accuracy))?.1;
+            top = MARGIN * GradedRun::new(origin, course.history, course.until, (by_force, accuracy))?.1;
         } else {
             for load in greatest(&all, course.softest_compliance()?) {
                 elastic.solve(load)?;
@@ -82,7 +82,7 @@ impl Beside {
             return Ok(None);
         }
         let mut curve = SolvedCurve::new(Contacts::new(elastic, tilt, tolerance), by_force, rest);
-        let mut below: Option<Solved> = None;
+        let mut below: Option<SolvedContact> = None;
         for k in (0..FIRST_LEVELS).rev() {
             let next = curve.contacts.solve(top * RATIO.powi(-k))?;
             below.iter().try_for_each(|below| curve.contacts.check(below, &next))?;
@@ -90,13 +90,18 @@ impl Beside {
             below = Some(next);
         }
         let origin = course.undisturbed(&curve.through(1, 0)?, interpolant, start)?;
-        let (repeated, _) = Repeated::new(origin, course.history, course.until, (by_force, accuracy))?;
-        Ok(Some(Beside { repeated, curve }))
+        let (repeated, _) = GradedRun::new(origin, course.history, course.until, (by_force, accuracy))?;
+        Ok(Some(FieldsByLevels { repeated, curve }))
     }
 
     /// The run to a time and what its steps and the curve leave, once that is a small part of what was asked or the
     /// curve has so many more contacts.
-    fn settled(&mut self, history: &dyn LoadHistory, at: (f64, bool), most_added: &mut usize) -> Result<(Found, f64)> {
+    fn settled(
+        &mut self,
+        history: &dyn LoadHistory,
+        at: (f64, bool),
+        most_added: &mut usize,
+    ) -> Result<(StateAt, f64)> {
         let allowed = 0.5 * OF_RUN * self.repeated.accuracy;
         loop {
             let (mut found, of_steps) = self.repeated.in_short_steps(history, at, allowed)?;

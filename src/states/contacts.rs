@@ -25,7 +25,7 @@ pub(super) struct Contacts {
     pub(super) tilt: [Tilt; 2],
     allowed_fall: f64,
     /// By ascending levels.
-    kept: Vec<Solved>,
+    kept: Vec<SolvedContact>,
     /// Elastic contacts solved since the last field, and their convolutions.
     pub(super) spent: [usize; 2],
     /// Set by another thread to end the contact under way.
@@ -34,7 +34,7 @@ pub(super) struct Contacts {
 
 /// An elastic contact at a level.
 #[derive(Debug, Clone)]
-pub(super) struct Solved {
+pub(super) struct SolvedContact {
     pub(super) level: f64,
     pub(super) motion: RigidMotion,
     pub(super) area: f64,
@@ -47,7 +47,7 @@ pub(super) type Weighted<'a> = (&'a Profile, f64);
 /// What a superposition of profiles has at its levels.
 pub(super) struct Superposition {
     /// By ascending levels.
-    pub(super) solved: Vec<Solved>,
+    pub(super) solved: Vec<SolvedContact>,
     /// The fields of the profiles on the whole grid.
     pub(super) fields: Vec<Vec<f64>>,
     /// What the levels leave in the worst of them, in L1 over its size.
@@ -60,7 +60,7 @@ impl Contacts {
         Contacts { elastic, tilt, allowed_fall, kept, spent: [0; 2], cancelled: None }
     }
 
-    pub(super) fn solve(&mut self, level: f64) -> Result<Solved> {
+    pub(super) fn solve(&mut self, level: f64) -> Result<SolvedContact> {
         if let Some(kept) = self.kept.iter().find(|kept| kept.level == level) {
             return Ok(kept.clone());
         }
@@ -72,11 +72,11 @@ impl Contacts {
         self.spent = [self.spent[0] + 1, self.spent[1] + report.convolutions];
         let fields = self.elastic.fields();
         let (motion, area) = (fields.motion(0), fields.contact_area());
-        Ok(Solved { level, motion, area, pressure: Pressed::new(fields.pressure()) })
+        Ok(SolvedContact { level, motion, area, pressure: Pressed::new(fields.pressure()) })
     }
 
     /// Solves an elastic contact and keeps it.
-    pub(super) fn keep(&mut self, level: f64) -> Result<Solved> {
+    pub(super) fn keep(&mut self, level: f64) -> Result<SolvedContact> {
         let solved = self.solve(level)?;
         let at = self.kept.partition_point(|kept| kept.level < level);
         if self.kept.get(at).is_none_or(|kept| kept.level > level) {
@@ -91,7 +91,7 @@ impl Contacts {
     }
 
     /// Nowhere may the pressure fall while the load grows.
-    pub(super) fn check(&self, below: &Solved, above: &Solved) -> Result<()> {
+    pub(super) fn check(&self, below: &SolvedContact, above: &SolvedContact) -> Result<()> {
         below.pressure.check_growth(&above.pressure, [below.level, above.level], self.allowed_fall)
     }
 
@@ -116,7 +116,7 @@ impl Contacts {
     pub(super) fn superpose(&mut self, profiles: &[Weighted<'_>], accuracy: f64) -> Result<Superposition> {
         let groups = profiles.iter().map(|(profile, _)| profile.len()).max().unwrap_or(0);
         let mut parts = if accuracy > 0.0 { FIRST_PARTS } else { groups };
-        let mut last: Option<Solved> = None;
+        let mut last: Option<SolvedContact> = None;
         loop {
             let levels = self.levels(profiles, parts);
             let mut solved = Vec::with_capacity(levels.len());
@@ -150,7 +150,7 @@ impl Contacts {
     }
 
     /// Σ w (p_e(l_i) − p_e(l_i−1)) = Σ (w_i − w_i+1) p_e(l_i), on every so many of the levels, the last one among them.
-    fn field(&self, profile: &Profile, solved: &[Solved], every: usize) -> Vec<f64> {
+    fn field(&self, profile: &Profile, solved: &[SolvedContact], every: usize) -> Vec<f64> {
         let picked = || solved.iter().skip(solved.len().saturating_sub(1) % every).step_by(every);
         let levels: Vec<f64> = picked().map(|solved| solved.level).collect();
         let shares = profile.means(&levels);

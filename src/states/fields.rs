@@ -4,7 +4,7 @@ use crate::error::{Result, within};
 use crate::fields::KeptFields;
 use crate::load::Load;
 use crate::states::contact::StatesContact;
-use crate::states::contacts::{Contacts, Solved, Superposition};
+use crate::states::contacts::{Contacts, SolvedContact, Superposition};
 use crate::states::profile::Profile;
 
 impl StatesContact {
@@ -48,7 +48,7 @@ impl StatesContact {
         elastic.kernel().convolve(&source, &mut displacement, &mut elastic.kernel().workspace()?)?;
         let levels: Vec<f64> = solved.iter().map(|solved| solved.level).collect();
         let mut before = motion;
-        for (share, Solved { motion: now, .. }) in displaced.means(&levels).into_iter().zip(&solved) {
+        for (share, SolvedContact { motion: now, .. }) in displaced.means(&levels).into_iter().zip(&solved) {
             motion.approach += share * (now.approach - before.approach);
             (0..2).for_each(|axis| motion.tilt[axis] += share * (now.tilt[axis] - before.tilt[axis]));
             before = *now;

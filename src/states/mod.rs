@@ -79,7 +79,7 @@ pub use sweep::Sweep;
 use crate::error::{Error, Result};
 
 /// Nothing where elastic states do not cover a scene.
-pub(crate) fn unless_refused<T>(found: Result<Option<T>>) -> Result<Option<T>> {
+pub(crate) fn none_if_not_covered<T>(found: Result<Option<T>>) -> Result<Option<T>> {
     match found {
         Err(Error::States(_) | Error::Step(_)) => Ok(None),
         other => other,

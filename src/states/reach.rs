@@ -144,7 +144,7 @@ pub(super) fn states_of(tilt: [Tilt; 2]) -> Result<Arc<ElasticStates>> {
 /// The loads of a run.
 pub(crate) fn sampled(history: &dyn LoadHistory, ends: [f64; 2]) -> Result<Vec<Load>> {
     let mut all = Vec::new();
-    for look in looks(history, ends, false) {
+    for look in looks(history, ends[0], ends[1], false) {
         all.extend(look?.1);
     }
     Ok(all)

@@ -29,14 +29,14 @@ pub(super) struct Refined {
     /// The greatest force of the run so far.
     force: f64,
     /// Steps of the run so far.
-    taken: Vec<Step>,
+    taken: Vec<RunPart>,
     /// In steps of a half, a quarter and so on: made where a field asks for it.
     finer: Mutex<Vec<Finer>>,
 }
 
 /// A step of the run.
 #[derive(Debug, Clone, Copy)]
-struct Step {
+struct RunPart {
     start: f64,
     end: f64,
     load: Load,
@@ -76,7 +76,7 @@ impl Refined {
         self.force = self.force.max(run.force());
         let end = run.time();
         let is_corner = history.next_breakpoint(start).is_some_and(|corner| corner <= end);
-        let step = Step { start, end, load: run.load(), is_corner };
+        let step = RunPart { start, end, load: run.load(), is_corner };
         self.taken.push(step);
         let Some(contact) = &mut self.coarse else { return };
         let (is_second, jumps) = (contact.time() < start, end == start);
@@ -141,12 +141,13 @@ impl Refined {
         cancelled: Option<&AtomicBool>,
     ) -> Result<()> {
         let parts = if self.in_halves { 2 * parts } else { parts };
-        while let Some(step @ Step { start, end, .. }) = self.taken.get(finer.followed).copied() {
+        while let Some(step @ RunPart { start, end, .. }) = self.taken.get(finer.followed).copied() {
             let inner = (1..parts).map(|k| start + (end - start) * f64::from(k) / f64::from(parts));
             for time in inner {
                 // parts that were taken before the flag was set
                 if time > finer.contact.time() {
-                    let part = Step { start, end: time, load: history.checked_before(time, true)?, is_corner: false };
+                    let part =
+                        RunPart { start, end: time, load: history.checked_before(time, true)?, is_corner: false };
                     take(&mut finer.contact, part, self.interpolant, cancelled)?;
                 }
             }
@@ -160,11 +161,11 @@ impl Refined {
 /// A step of a contact to the end of one of the run.
 fn take(
     contact: &mut ViscoelasticContact,
-    step: Step,
+    step: RunPart,
     interpolant: Interpolant,
     cancelled: Option<&AtomicBool>,
 ) -> Result<()> {
-    let Step { end, load, is_corner, .. } = step;
+    let RunPart { end, load, is_corner, .. } = step;
     let loads = [load];
     let mut request = contact.request(end, end - contact.time(), &loads, contact.settings().tolerance)?;
     (request.interval.interpolant, request.cancelled) = (interpolant, cancelled);

@@ -29,7 +29,7 @@ pub(super) const LEAST_FORCE: f64 = 0.01;
 
 /// Repeats a run on levels.
 #[derive(Debug, Clone)]
-pub(crate) struct Repeated {
+pub(crate) struct GradedRun {
     /// The contact at the start of the run.
     origin: StatesContact,
     pub(super) accuracy: f64,
@@ -44,21 +44,21 @@ pub(crate) struct Repeated {
 }
 
 /// A contact on levels at a time.
-pub(crate) struct Found {
+pub(crate) struct StateAt {
     pub(crate) contact: StatesContact,
     /// The greatest force so far.
     force: f64,
     by_force: bool,
 }
 
-impl Repeated {
+impl GradedRun {
     /// A run from `origin`, under forces alone or not; and its greatest level.
     pub(crate) fn new(
         origin: StatesContact,
         history: &dyn LoadHistory,
         until: f64,
         (by_force, accuracy): (bool, f64),
-    ) -> Result<(Repeated, f64)> {
+    ) -> Result<(GradedRun, f64)> {
         let (mut contact, mut ends, mut greatest) = (origin.clone(), vec![origin.time()], 0.0_f64);
         let (mut force, mut forces) = (0.0_f64, Vec::new());
         let mut run = contact.follow(history, Stepping::adaptive(COARSE), until);
@@ -73,12 +73,12 @@ impl Repeated {
         let within = |pair: &[f64]| (1..FIRST_PARTS).map(|k| part(pair, k)).chain([pair[1]]).collect::<Vec<_>>();
         let schedule = ends.windows(2).filter(|pair| pair[1] > pair[0]).flat_map(within).collect();
         let (forces, shortening) = (forces.into(), accuracy.sqrt());
-        Ok((Repeated { origin, accuracy, schedule, forces, shortening, by_force }, greatest))
+        Ok((GradedRun { origin, accuracy, schedule, forces, shortening, by_force }, greatest))
     }
 
     /// The run on other elastic states of the same surface.
-    pub(super) fn on(&self, states: Arc<ElasticStates>) -> Repeated {
-        Repeated { origin: StatesContact { states, ..self.origin.clone() }, ..self.clone() }
+    pub(super) fn on(&self, states: Arc<ElasticStates>) -> GradedRun {
+        GradedRun { origin: StatesContact { states, ..self.origin.clone() }, ..self.clone() }
     }
 
     /// The contact at a time, in steps that are halved until they leave so little of the pressure, and what they leave.
@@ -87,7 +87,7 @@ impl Repeated {
         history: &dyn LoadHistory,
         at: (f64, bool),
         allowed: f64,
-    ) -> Result<(Found, f64)> {
+    ) -> Result<(StateAt, f64)> {
         for attempt in 1.. {
             let mut found = self.at(history, at.0, at.1)?;
             let error = found.distance(&mut self.by_longer_steps(history, at)?)? / OF_LONGER;
@@ -126,12 +126,12 @@ impl Repeated {
     }
 
     /// The contact at a time, after a jump of the load there or before it.
-    pub(crate) fn at(&self, history: &dyn LoadHistory, time: f64, after: bool) -> Result<Found> {
+    pub(crate) fn at(&self, history: &dyn LoadHistory, time: f64, after: bool) -> Result<StateAt> {
         self.by_steps(history, &self.ends(time), (time, after))
     }
 
     /// The same in steps twice as long, except where they end at corners of the load.
-    fn by_longer_steps(&self, history: &dyn LoadHistory, at: (f64, bool)) -> Result<Found> {
+    fn by_longer_steps(&self, history: &dyn LoadHistory, at: (f64, bool)) -> Result<StateAt> {
         let mut corner = history.next_breakpoint(self.origin.time());
         let is_kept = |(k, end): &(usize, f64)| {
             let is_corner = corner.is_some_and(|corner| corner <= *end);
@@ -143,7 +143,7 @@ impl Repeated {
     }
 
     /// The contact at a time, by steps with these ends.
-    fn by_steps(&self, history: &dyn LoadHistory, ends: &[f64], (time, after): (f64, bool)) -> Result<Found> {
+    fn by_steps(&self, history: &dyn LoadHistory, ends: &[f64], (time, after): (f64, bool)) -> Result<StateAt> {
         let mut contact = self.origin.clone();
         let start = contact.time();
         let seen = self.forces.partition_point(|(end, _)| *end < time || after && *end == time);
@@ -176,11 +176,11 @@ impl Repeated {
                 corner = history.next_breakpoint(next);
             }
         }
-        Ok(Found { contact, force, by_force: self.by_force })
+        Ok(StateAt { contact, force, by_force: self.by_force })
     }
 }
 
-impl Found {
+impl StateAt {
     pub(super) fn size(&self) -> f64 {
         self.contact.force().max(LEAST_FORCE * self.force)
     }
@@ -197,7 +197,7 @@ impl Found {
 
     /// How far the pressures of two repetitions are apart, in L1 over the force: infinite where both are apart by less
     /// than they differ in that.
-    pub(super) fn distance(&mut self, other: &mut Found) -> Result<f64> {
+    pub(super) fn distance(&mut self, other: &mut StateAt) -> Result<f64> {
         if !self.by_force && self.contact.level().max(other.contact.level()) == 0.0 {
             let [own, other] = [self.clearance()?, other.clearance()?];
             return Ok(if (own - other).abs() < own { 0.0 } else { f64::INFINITY });

@@ -11,7 +11,7 @@ use crate::run::{Contact, Run, Stepping};
 use crate::states::contact::StatesContact;
 use crate::states::control::OnLevels;
 #[cfg(feature = "checkpoint")]
-use crate::states::saved::SavedRun;
+use crate::states::saved::SavedStatesRun;
 
 /// A [`Run`] of a [`StatesContact`], made by [`Contact::follow`]. Adaptive steps are taken whole and in two
 /// halves, and the halves are kept. The error of the step is the difference of both, in depth and force and in what
@@ -88,7 +88,7 @@ impl Contact for StatesContact {
 
     fn lead(&mut self, stepping: Stepping, until: f64) -> (Progress, Box<dyn Control<Self>>) {
         #[cfg(feature = "checkpoint")]
-        if let Some(Ok(saved)) = self.saved_run.take().map(|saved| saved.downcast::<SavedRun>())
+        if let Some(Ok(saved)) = self.saved_run.take().map(|saved| saved.downcast::<SavedStatesRun>())
             && saved.0.continues(self.time(), stepping, until)
         {
             let (progress, record) = (*saved).clone();

@@ -10,12 +10,12 @@ use crate::load::{Load, LoadHistory};
 use crate::run::Run;
 use crate::run::control::{Exact, FieldFinder, FieldReport, FieldRequest, Prepared};
 use crate::run::field::MOST_FIELDS;
-use crate::states::beside::Beside;
+use crate::states::beside::FieldsByLevels;
 use crate::states::contact::StatesContact;
+use crate::states::none_if_not_covered;
 use crate::states::reach::{Loading, sampled};
 use crate::states::refined::Refined;
-use crate::states::repeated::Repeated;
-use crate::states::unless_refused;
+use crate::states::repeated::GradedRun;
 
 /// Number and ratio of the graded steps before a field where levels do not give it.
 const GRADED: (i32, f64) = (12, 0.7);
@@ -27,7 +27,7 @@ enum InSpace {
     #[default]
     Unknown,
     /// From elastic contacts.
-    Beside(Mutex<Box<Beside>>),
+    FieldsByLevels(Mutex<Box<FieldsByLevels>>),
     /// By graded steps, which are halved where they err by too much.
     Refined(Box<Refined>),
 }
@@ -107,9 +107,9 @@ impl FieldFinder<ViscoelasticContact> for InSpace {
         let is_alone = contact.fields().bodies() == 1 && attraction.is_none() && !state.held.region.is_shared();
         let is_new = start == 0.0 || state.is_undisturbed();
         let kind = (settings.adaptive_interpolant(), start);
-        let beside = (is_alone && is_new).then(|| Beside::new(contact, &course, accuracy, kind)).transpose();
-        if let Some(beside) = unless_refused(beside)?.flatten() {
-            *self = InSpace::Beside(Mutex::new(Box::new(beside)));
+        let beside = (is_alone && is_new).then(|| FieldsByLevels::new(contact, &course, accuracy, kind)).transpose();
+        if let Some(beside) = none_if_not_covered(beside)?.flatten() {
+            *self = InSpace::FieldsByLevels(Mutex::new(Box::new(beside)));
             return Ok(Prepared { stops: Vec::new(), tolerance: f64::INFINITY });
         }
         count_within("fields for which steps end", times.len(), times.len() <= MOST_FIELDS, "10 000 at most")?;
@@ -148,11 +148,11 @@ impl FieldFinder<ViscoelasticContact> for InSpace {
                 report.error = error;
                 return Ok((fields.map(|fields| Exact::Fields(Box::new(fields))), report));
             }
-            InSpace::Beside(beside) => beside,
+            InSpace::FieldsByLevels(beside) => beside,
         };
         let mut beside = beside.lock().unwrap_or_else(PoisonError::into_inner);
         beside.curve.contacts.cancelled = cancelled.cloned();
-        let Some(found) = unless_refused(beside.pressure(history, contact.time(), after).map(Some))? else {
+        let Some(found) = none_if_not_covered(beside.pressure(history, contact.time(), after).map(Some))? else {
             return Ok((None, report));
         };
         [report.elastic_contacts, report.convolutions] = found.spent;
@@ -164,13 +164,13 @@ impl FieldFinder<ViscoelasticContact> for InSpace {
 
 /// A run on states in fine steps.
 #[derive(Debug, Default)]
-struct OnStates(Option<Mutex<Repeated>>);
+struct OnStates(Option<Mutex<GradedRun>>);
 
 impl FieldFinder<StatesContact> for OnStates {
     fn prepare(&mut self, contact: &StatesContact, request: &FieldRequest<'_>) -> Result<Prepared> {
         let FieldRequest { history, accuracy, until, .. } = *request;
         let by_force = sampled(history, [contact.time(), until])?.iter().all(Load::is_force);
-        let (repeated, _) = Repeated::new(contact.clone(), history, until, (by_force, accuracy))?;
+        let (repeated, _) = GradedRun::new(contact.clone(), history, until, (by_force, accuracy))?;
         self.0 = Some(Mutex::new(repeated));
         Ok(Prepared { stops: Vec::new(), tolerance: f64::INFINITY })
     }

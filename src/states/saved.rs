@@ -26,11 +26,11 @@ struct Saved<'a> {
     /// Approach that the last step prescribed.
     prescribed: Option<f64>,
     levels: Cow<'a, Levels>,
-    run: Option<SavedRun>,
+    run: Option<SavedStatesRun>,
 }
 
 /// A run that continues from the state.
-pub(super) type SavedRun = (Progress, Record<OnLevels>);
+pub(super) type SavedStatesRun = (Progress, Record<OnLevels>);
 
 impl StatesContact {
     /// Saves the whole state to a file, from which a contact of the same states, material and time rule continues
@@ -46,7 +46,7 @@ impl StatesContact {
     }
 
     /// [`StatesContact::save`] with a run that continues from there.
-    pub(super) fn save_with(&self, path: &Path, run: Option<SavedRun>) -> Result<()> {
+    pub(super) fn save_with(&self, path: &Path, run: Option<SavedStatesRun>) -> Result<()> {
         let times = [self.time, self.reduced_time, self.undisturbed_until];
         let saved = Saved { times, prescribed: self.prescribed, levels: Cow::Borrowed(&self.levels), run };
         replace(path, |out| Output::begin(out, &self.parts(), &saved)?.finish())

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::error::Result;
 use crate::load::Tilt;
 use crate::solver::RigidMotion;
-use crate::states::contacts::{Contacts, NEAREST, Solved};
+use crate::states::contacts::{Contacts, NEAREST, SolvedContact};
 use crate::states::curve::ElasticStates;
 
 /// The slope of the curve turns by so much of the maximum turn where contacts are added.
@@ -30,7 +30,7 @@ impl SolvedCurve {
     }
 
     /// Adds an elastic contact to the curve.
-    pub(super) fn add(&mut self, Solved { level, motion, area, .. }: &Solved) {
+    pub(super) fn add(&mut self, SolvedContact { level, motion, area, .. }: &SolvedContact) {
         let depth = if self.by_force { level.powf(2.0 / 3.0) } else { motion.approach - self.rest };
         let at = self.rows.partition_point(|row| row[0] < *level);
         let is_new = |row: &[f64; 3]| (row[0] / level - 1.0).abs() > NEAREST && (row[1] > depth) == (row[0] > *level);

@@ -139,7 +139,7 @@ impl Sweep {
         let tilt = self.tilt.map(|tilt| if let Tilt::Fixed(angle) = tilt { angle } else { 0.0 });
         let at = load_point(self.tilt);
         let grid = elastic.fields().grid().clone();
-        let mut solver = Solver {
+        let mut solver = SweepSolver {
             asked: &self,
             elastic,
             at,
@@ -184,7 +184,7 @@ impl Pair {
 }
 
 /// The elastic contact that finds states.
-struct Solver<'a, P> {
+struct SweepSolver<'a, P> {
     asked: &'a Sweep,
     elastic: ElasticContact,
     /// The load point.
@@ -202,7 +202,7 @@ struct Solver<'a, P> {
     progress: P,
 }
 
-impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> Solver<'_, P> {
+impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> SweepSolver<'_, P> {
     /// The greatest level under some loads.
     fn largest_level(&mut self, loads: &[Load]) -> Result<f64> {
         let mut largest = 0.0_f64;
@@ -340,7 +340,7 @@ impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> Solver<'_, P> {
     }
 
     fn finish(self) -> ElasticStates {
-        let Solver { asked, solved, mut kept, rest, error, first_level, .. } = self;
+        let SweepSolver { asked, solved, mut kept, rest, error, first_level, .. } = self;
         let mut order: Vec<usize> = (0..solved.len()).filter(|&k| solved[k].level >= first_level).collect();
         order.sort_by(|&a, &b| solved[a].level.total_cmp(&solved[b].level));
         let states = order.iter().map(|&k| solved[k]).collect();

@@ -8,7 +8,7 @@ use crate::extent::Extent;
 use crate::fields::Fields;
 use crate::load::Load;
 use crate::states::{as_elastic, greatest, sampled};
-use crate::study::scene::Scene;
+use crate::study::scene::StudyScene;
 
 /// Number of loads of a run whose tilt or load point changes that give a contact.
 const OF_TURNING: usize = 16;
@@ -114,7 +114,7 @@ impl Domain {
     }
 
     /// Finds the elastic contacts under the greatest loads on domains of several sizes until they fill one well.
-    pub(super) fn find(scene: &Scene<'_>, sides: [Side; 2]) -> Result<Domain> {
+    pub(super) fn find(scene: &StudyScene<'_>, sides: [Side; 2]) -> Result<Domain> {
         let is_found = sides.map(|side| side == Side::Found);
         let (first, loads) = first_length(scene, sides)?;
         let mut lengths = sides.map(|side| side.given().unwrap_or(first));
@@ -150,7 +150,7 @@ fn grid_of(sides: [Side; 2], lengths: [f64; 2]) -> Result<Grid> {
 
 /// Loads of the bodies at one time, as those of an elastic body of unit compliance under which the contact is as
 /// large as ever.
-fn greatest_loads(scene: &Scene<'_>, compliance: f64) -> Result<Vec<Vec<Load>>> {
+fn greatest_loads(scene: &StudyScene<'_>, compliance: f64) -> Result<Vec<Vec<Load>>> {
     let all: Vec<Vec<Load>> =
         scene.histories.iter().map(|history| sampled(*history, [0.0, scene.until])).collect::<Result<_>>()?;
     let mut loads: Vec<Vec<Load>> = all.iter().map(|all| greatest(all, compliance).collect()).collect();
@@ -176,7 +176,7 @@ fn greatest_contacts(builder: &Builder, loads: &[Vec<Load>], sides: [Side; 2]) -
 
 /// Initial length L of the domain: a contact of half width L/4 is indented by the gap at its edge, at a level of about
 /// L times this gap. With the greatest loads.
-fn first_length(scene: &Scene<'_>, sides: [Side; 2]) -> Result<(f64, Vec<Vec<Load>>)> {
+fn first_length(scene: &StudyScene<'_>, sides: [Side; 2]) -> Result<(f64, Vec<Vec<Load>>)> {
     let line = sides.iter().find_map(|side| if let Side::Uniform(length) = side { Some(*length) } else { None });
     let (mut failed, mut known) = (None, None);
     for length in (-24..=18).map(|k| 10f64.powf(0.5 * f64::from(k))) {

@@ -11,7 +11,7 @@ use crate::observe::grid_convergence::{difference, difference_of_fields};
 use crate::run::Stepping;
 use crate::study::domain::{Domain, Side};
 use crate::study::observable::{Observed, Reading};
-use crate::study::scene::Scene;
+use crate::study::scene::StudyScene;
 use crate::study::{Cost, StudyProgress};
 use crate::{Grid, memory};
 
@@ -22,7 +22,7 @@ const LEAST_FIELDS: f64 = 1e-5;
 
 /// What all runs of a study have in common.
 pub(super) struct Runs<'a, 'p> {
-    pub(super) scene: &'p Scene<'a>,
+    pub(super) scene: &'p StudyScene<'a>,
     pub(super) observed: &'p [Observed<'a>],
     /// Times at which pressure fields are compared.
     pub(super) fields_at: &'p [f64],
@@ -56,7 +56,7 @@ pub(super) struct Level {
 impl Runs<'_, '_> {
     /// Runs the scene in adaptive steps that end at `stops`, too.
     pub(super) fn level(&mut self, grid: Grid, tolerance: f64, stops: &[f64]) -> Result<Level> {
-        let Scene { histories, until, accuracy, .. } = self.scene;
+        let StudyScene { histories, until, accuracy, .. } = self.scene;
         let builder = self.scene.builder(grid.clone())?;
         let bytes = builder.memory()?;
         // adaptive steps keep the rate of the displacement

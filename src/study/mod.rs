@@ -26,7 +26,7 @@ use crate::fields::Fields;
 use crate::load::LoadHistory;
 use crate::study::domain::{Side, probe};
 use crate::study::observable::{Observed, Reading};
-use crate::study::scene::Scene;
+use crate::study::scene::StudyScene;
 
 /// Most cells of a mesh, unless another budget is given.
 const MOST_CELLS: usize = 1 << 18;
@@ -75,7 +75,7 @@ const MOST_CELLS: usize = 1 << 18;
 #[derive(Debug)]
 #[must_use = "nothing is computed until it runs"]
 pub struct Study<'a> {
-    scene: Scene<'a>,
+    scene: StudyScene<'a>,
     sides: [Side; 2],
     /// Sides that are periods of the body.
     periods: [bool; 2],
@@ -133,7 +133,12 @@ impl<'a> Study<'a> {
     ) -> Study<'a> {
         let asked = |observable: Observable| matches!(observable, Observable::Approach | Observable::Force);
         Study {
-            scene: Scene { on: Box::new(scene), histories: histories.to_vec(), until, accuracy: Accuracy::default() },
+            scene: StudyScene {
+                on: Box::new(scene),
+                histories: histories.to_vec(),
+                until,
+                accuracy: Accuracy::default(),
+            },
             sides: [Side::Found; 2],
             periods: [false; 2],
             observed: Observable::ALL.map(|observable| observable.observed(asked(observable))).into(),
@@ -305,6 +310,6 @@ impl<'a> Study<'a> {
             }
         }
         let is_given = !sides.contains(&Side::Found);
-        coverage::FOUND_DOMAIN.unless(|_| builder.attraction.is_some() && !is_given)
+        coverage::FOUND_DOMAIN.refuse_if(|_| builder.attraction.is_some() && !is_given)
     }
 }

@@ -15,7 +15,7 @@ use crate::study::Accuracy;
 pub(super) type SceneOf<'a> = Box<dyn Fn(Grid, Settings) -> Result<Builder> + 'a>;
 
 /// A scene along its load histories.
-pub(super) struct Scene<'a> {
+pub(super) struct StudyScene<'a> {
     pub(super) on: SceneOf<'a>,
     /// One for each rigid body.
     pub(super) histories: Vec<&'a dyn LoadHistory>,
@@ -23,13 +23,13 @@ pub(super) struct Scene<'a> {
     pub(super) accuracy: Accuracy,
 }
 
-impl fmt::Debug for Scene<'_> {
+impl fmt::Debug for StudyScene<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Scene").field("until", &self.until).finish_non_exhaustive()
+        f.debug_struct("StudyScene").field("until", &self.until).finish_non_exhaustive()
     }
 }
 
-impl Scene<'_> {
+impl StudyScene<'_> {
     /// The contact on a grid; its materials are fitted over the times of the run.
     pub(super) fn builder(&self, grid: Grid) -> Result<Builder> {
         let builder = (self.on)(grid, self.accuracy.settings())?;

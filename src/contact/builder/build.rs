@@ -14,7 +14,7 @@ use crate::equilibrium::ground::check_bodies;
 use crate::equilibrium::indenter::even_axes_of;
 use crate::equilibrium::{Ground, Indenter, Region};
 use crate::error::{AdhesionError, Error, Result, Special, coverage};
-use crate::error::{length, positive, unless_failed};
+use crate::error::{length, or_failure_of, positive};
 use crate::geometry::{Gap, Missed};
 use crate::hereditary::History;
 use crate::kernel::Layer;
@@ -57,7 +57,7 @@ impl Builder {
         };
         let rows = self.agreed_rows(group)?;
         let gaps = std::mem::take(&mut self.gaps);
-        rows.unless_lost(|| {
+        rows.or_loss(|| {
             let (scene, history) = rows.agree(self.scene(1))?;
             let (gap, even, region) = self.shared_gap(&gaps, &rows)?;
             rows.agree(scene.check_memory(&history, &region, 0))?;
@@ -88,7 +88,7 @@ impl Builder {
     fn agreed_rows(&self, group: &Arc<dyn Ranks>) -> Result<Rows> {
         // for the agreement on the grid, before there are rows to share
         let anything = Rows::of_rank([1, 1], Arc::clone(group));
-        anything.unless_lost(|| {
+        anything.or_loss(|| {
             anything.agree(self.validate().and_then(|()| self.is_covered(Special::Ranks)))?;
             let ([n1, n2], [side1, side2]) = (self.grid.cells(), self.grid.spacing());
             let Settings { tolerance, symmetry, .. } = self.settings;
@@ -107,7 +107,7 @@ impl Builder {
             (self.attraction.is_some(), coverage::ATTRACTED),
             (self.temperature.is_some(), coverage::TEMPERATURES),
         ];
-        parts.into_iter().try_for_each(|(has, case)| case.unless(|other| has && other == special))
+        parts.into_iter().try_for_each(|(has, case)| case.refuse_if(|other| has && other == special))
     }
 
     /// Gap, its symmetry and the region of a contact whose rows ranks share out. A call of all ranks.
@@ -150,7 +150,7 @@ impl Builder {
     pub fn memory(&self) -> Result<Memory> {
         if let Some(group) = &self.ranks {
             let rows = self.agreed_rows(group)?;
-            return rows.unless_lost(|| {
+            return rows.or_loss(|| {
                 let (scene, history) = rows.agree(self.scene(1))?;
                 let (_, _, region) = self.shared_gap(&self.gaps, &rows)?;
                 Ok(scene.memory_on(&history, &region))
@@ -222,7 +222,7 @@ fn local_gap<'a>(gaps: &'a [LocalGap], rows: &Rows) -> Result<&'a [f64]> {
     let Some((has, gap)) = gaps.first() else { return Err(Error::Missing { part: "geometry" }) };
     let (gap, own, [n1, n2]) = (gap.as_ref().map_err(Error::clone)?, rows.own(), rows.cells());
     let is_of_all = *has == (0..n1);
-    coverage::OTHER_ROWS.unless(|_| !is_of_all && *has != own)?;
+    coverage::OTHER_ROWS.refuse_if(|_| !is_of_all && *has != own)?;
     Ok(if is_of_all { &gap[own.start * n2..own.end * n2] } else { gap })
 }
 
@@ -267,7 +267,7 @@ fn resolved_softening(law: &dyn Attraction, material: &Material, grid: &Grid) ->
         laws::usable(law).map_err(AdhesionError::Law)?;
         Ok(softening(law))
     };
-    let softening = unless_failed(|| law.failure(), of_law)?;
+    let softening = or_failure_of(|| law.failure(), of_law)?;
     let cells = cells_in_zone(softening, material.glassy_compliance()?, grid);
     if cells >= LEAST_ZONE * (1.0 - ROUNDING) {
         return Ok(softening);

@@ -38,7 +38,7 @@ pub struct Builder {
     pub(crate) counter_body: Option<Material>,
     /// What a creeping counter-body does in a steady motion.
     pub(crate) counter_motion: Option<CounterMotion>,
-    pub(crate) times: Option<Times>,
+    pub(crate) times: Option<RunTimes>,
     pub(crate) temperature: Option<TemperatureHistory>,
     pub(crate) attraction: Option<Arc<dyn Attraction>>,
     pub(crate) kernel: Option<Arc<InfluenceKernel>>,
@@ -133,7 +133,7 @@ impl Builder {
     /// # Ok::<(), viscocontact::Error>(())
     /// ```
     pub fn times(self, times: RangeInclusive<f64>) -> Builder {
-        Builder { times: Some(Times { range: times, of_run: false }), ..self }
+        Builder { times: Some(RunTimes { range: times, of_run: false }), ..self }
     }
 
     /// [`Builder::times`] of a run along `history` that ends at `until` \[s\]: from a millionth of the shortest time between
@@ -154,7 +154,7 @@ impl Builder {
     /// # Ok::<(), viscocontact::Error>(())
     /// ```
     pub fn times_of(self, history: &dyn LoadHistory, until: f64) -> Builder {
-        Builder { times: Some(Times::of_run(history, until)), ..self }
+        Builder { times: Some(RunTimes::of_run(history, until)), ..self }
     }
 
     /// A temperature that changes: all material then creeps in reduced time, ξ = ∫ dt/a_T(T(t)), with its times at
@@ -225,18 +225,18 @@ impl Builder {
 
 /// The times over which the series of a material is fitted.
 #[derive(Debug, Clone)]
-pub(crate) struct Times {
+pub(crate) struct RunTimes {
     pub(super) range: RangeInclusive<f64>,
     /// Whether the times come from a run; a run fails where the material is not known.
     pub(super) of_run: bool,
 }
 
-impl Times {
+impl RunTimes {
     /// The times of a run along `history` to the time `until`.
-    pub(in crate::contact) fn of_run(history: &dyn LoadHistory, until: f64) -> Times {
+    pub(in crate::contact) fn of_run(history: &dyn LoadHistory, until: f64) -> RunTimes {
         let corners = history.breakpoints(0.0).take(MAX_CORNERS).take_while(|&next| next < until);
         let (shortest, _) = corners.fold((until, 0.0), |(least, corner), next| (f64::min(least, next - corner), next));
-        Times { range: SHORTEST_PART * shortest..=until, of_run: true }
+        RunTimes { range: SHORTEST_PART * shortest..=until, of_run: true }
     }
 
     /// The material, with a series over these times if it has no exact series.

@@ -79,7 +79,7 @@ impl ViscoelasticContact {
     /// Puts a saved state in the place of this one, and returns the run that saved it.
     pub(crate) fn resume_with<P: SavedRun>(&mut self, path: &Path) -> Result<Option<P>> {
         let rows = self.computation.state.held.region.rows();
-        rows.unless_lost(|| {
+        rows.or_loss(|| {
             let failed = |cause| Error::Checkpoint { path: path.to_owned(), cause };
             let scene = self.parts();
             let mut file = rows.agree(Input::open(path).map_err(failed))?;

@@ -19,7 +19,7 @@ impl Computation {
         released && trial.free[body].translation
     }
 
-    /// By what errors are weighted: the pressure at the end of the step tried, at its start, and at the start of the
+    /// Weights of the errors: the pressure at the end of the step tried, at its start, and at the start of the
     /// step before, or the net traction where surfaces attract each other.
     fn weights(&self) -> [&[f64]; 3] {
         let Computation { state, trial, attracted, .. } = self;

@@ -37,7 +37,7 @@ use crate::equilibrium::spring::{guess_forces, solve_with_springs};
 use crate::equilibrium::window::growth::{OnRegion, solve_on_growing_region};
 use crate::equilibrium::window::placement::{outgrown, region_for};
 use crate::equilibrium::{Edge, Equilibrium, Figures, Held, Region, RigidBodies, Trial};
-use crate::error::{AdhesionError, Error, Result, StepError, non_negative, unless_failed};
+use crate::error::{AdhesionError, Error, Result, StepError, non_negative, or_failure_of};
 use crate::events;
 use crate::hereditary::{Interpolant, Interval, StepContext, TimeError};
 use crate::load::Load;
@@ -103,7 +103,7 @@ impl ViscoelasticContact {
 
     fn next(&mut self, cancelled: Option<&AtomicBool>, dt: f64, loads: &[Load]) -> Result<StepReport> {
         let rows = self.computation.state.held.region.rows();
-        rows.unless_lost(|| {
+        rows.or_loss(|| {
             let requested = self.request_next(dt, loads);
             let requested =
                 requested.and_then(|step| validate_loads(&self.scene.ground, step.request()).map(|()| step));
@@ -122,7 +122,7 @@ impl ViscoelasticContact {
     pub(crate) fn request<'a>(&self, time: f64, length: f64, loads: &'a [Load], tolerance: f64) -> Result<Step<'a>> {
         let State { held: Held { indenter, .. }, clock, .. } = &self.computation.state;
         non_negative("time", time)?;
-        let dt = self.scene.reduced_length([clock.time, time], length)?;
+        let dt = self.scene.reduced_length(clock.time, time, length)?;
         let reduced = if self.scene.temperature.is_some() { clock.reduced_time + dt } else { time };
         let interval =
             Interval { time, length, reduced, dt, stride: [0; 2], interpolant: self.settings().interpolant() };
@@ -147,7 +147,7 @@ impl ViscoelasticContact {
         let (rows, from) = (region.rows(), region.cells());
         // ranks wait for each other: on the threads of one pool they would block each other
         let cells = if region.is_shared() { 0 } else { region.len() };
-        let tried = rows.unless_lost(|| {
+        let tried = rows.or_loss(|| {
             rows.same(marks(step))?;
             // ranks would see the flag in different iterations: they ask once a step
             if step.cancelled.is_some_and(|flag| rows.any(flag.load(Ordering::Relaxed))) {
@@ -342,10 +342,10 @@ impl OnRegion for Computation {
         // p ≥ 0, h ≥ 0, p h = 0, with force and moments in balance
         let cancelled = step.cancelled.filter(|_| !held.region.is_shared());
         let stop = Stop { tolerance: step.tolerance, max_iterations: ground.settings.max_iterations, cancelled };
-        let given = [c, bodies.greatest_motion(&ground.grid)];
         if let Some(law) = ground.attraction.as_deref() {
-            let attracted_step = AttractedStep { scene, law, state, step, bodies, given, stop, wanted: trial.free[0] };
-            unless_failed(|| law.failure(), || attracted_step.solve(window, trial, attracted))?;
+            let attracted_step =
+                AttractedStep { scene, law, state, step, bodies, compliance: c, stop, wanted: trial.free[0] };
+            or_failure_of(|| law.failure(), || attracted_step.solve(window, trial, attracted))?;
         } else {
             guess_forces(ground, held, window.gap(&step.indenter), request, c, trial);
             if c == 0.0 {
@@ -357,7 +357,8 @@ impl OnRegion for Computation {
                     trial.predicted = predict_contact(state, window, trial, step, c);
                 }
             }
-            let solve = |trial: &mut Trial| window.solve(&step.indenter, given, stop, trial);
+            let prescribed = bodies.greatest_motion(&ground.grid);
+            let solve = |trial: &mut Trial| window.solve(&step.indenter, c, prescribed, stop, trial);
             let outcome = solve_with_springs(ground, held, request, c, trial, solve);
             converged(outcome, ground, &trial.solution, request)?;
         }

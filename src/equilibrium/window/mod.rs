@@ -56,10 +56,10 @@ impl Window {
     }
 
     /// Exchanges the kernel for the near field, if there is one, and back.
-    pub(crate) fn trade_kernels(&mut self) {
+    pub(crate) fn swap_near_field(&mut self) {
         if let Some((kernel, work)) = &mut self.near {
             std::mem::swap(&mut self.kernel, kernel);
-            self.work.trade(work);
+            self.work.swap(work);
         }
     }
 
@@ -73,7 +73,8 @@ impl Window {
     pub(crate) fn solve(
         &mut self,
         indenter: &Indenter,
-        [c, prescribed]: [f64; 2],
+        c: f64,
+        prescribed: f64,
         stop: Stop<'_>,
         trial: &mut Trial,
     ) -> Outcome {

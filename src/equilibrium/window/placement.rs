@@ -16,7 +16,7 @@ const HALVINGS: usize = 24;
 
 /// The region that a solution has to begin on, unless it is the one held: symmetric where the region is folded and
 /// the indenter is not `moving` along that axis, and with the first contact within it, at the compliance `first` of
-/// bodies that are yet to touch. Told with it is whether it was chosen for a contact.
+/// bodies that are yet to touch. Also returns whether it was chosen for a contact.
 ///
 /// # Errors
 /// If ranks share out the rows, and the load breaks a symmetry.
@@ -36,7 +36,7 @@ pub(crate) fn region_for(
     let folded = held.region.folded();
     let even = request.indenter.keeps_folded(folded, &ground.grid);
     let still_folded = [0, 1].map(|axis| even[axis] && upright(axis) && !moving[axis]);
-    coverage::BROKEN_SYMMETRY.unless(|_| still_folded != folded && held.region.is_shared())?;
+    coverage::BROKEN_SYMMETRY.refuse_if(|_| still_folded != folded && held.region.is_shared())?;
     let unfolded = (still_folded != folded).then(|| held.region.unfolded(still_folded));
     let region = unfolded.as_ref().unwrap_or(&held.region);
     if let Some(compliance) = first.filter(|_| !held.region_is_for_contact && !region.covers())

@@ -41,10 +41,10 @@ impl Layout {
     }
 
     /// Bytes of the buffers that an operator of another layout, on the same cells, lends to one of this layout.
-    pub(crate) fn lent_bytes(&self, shares: Option<&Shares>, (lender, lending): (&Layout, Option<&Shares>)) -> u128 {
-        let lends =
+    pub(crate) fn shared_bytes(&self, shares: Option<&Shares>, (lender, lending): (&Layout, Option<&Shares>)) -> u128 {
+        let is_shared =
             !self.is_single_column() && !lender.is_single_column() && lender.tiles(lending) >= self.tiles(shares);
-        if lends { COMPLEX * self.between(shares) } else { 0 }
+        if is_shared { COMPLEX * self.between(shares) } else { 0 }
     }
 
     /// As many threads as pay off for this size; one for each rank, if ranks share it.

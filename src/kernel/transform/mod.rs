@@ -101,7 +101,7 @@ impl SpectralOperator {
         self.read(field, work);
     }
 
-    /// [`SpectralOperator::apply_in_place`] with buffers of a [`SpectralOperator::workspace_beside`] another one.
+    /// [`SpectralOperator::apply_in_place`] with buffers of a [`SpectralOperator::workspace_sharing`] another one.
     pub(crate) fn apply_beside(
         &self,
         field: &mut [f64],
@@ -110,11 +110,11 @@ impl SpectralOperator {
     ) {
         let lent = work.tiles.is_empty();
         if lent {
-            work.trade_tiles(lender);
+            work.swap_tiles(lender);
         }
         self.apply_in_place(field, work);
         if lent {
-            work.trade_tiles(lender);
+            work.swap_tiles(lender);
         }
     }
 

@@ -62,9 +62,9 @@ impl SpectralOperator {
 
     /// Buffers for [`SpectralOperator::apply_beside`] an operator of the same cells, which lends its tiles if they
     /// suffice. (On a rank the smaller operator may have more tiles.)
-    pub(crate) fn workspace_beside(&self, lender: &SpectralOperator) -> TransformWorkspace {
-        let lends = self.column.is_none() && lender.column.is_none() && lender.tiles() >= self.tiles();
-        self.buffers(self.layout.lanes(self.shares.as_ref()), if lends { 0 } else { self.tiles() })
+    pub(crate) fn workspace_sharing(&self, lender: &SpectralOperator) -> TransformWorkspace {
+        let shares_tiles = self.column.is_none() && lender.column.is_none() && lender.tiles() >= self.tiles();
+        self.buffers(self.layout.lanes(self.shares.as_ref()), if shares_tiles { 0 } else { self.tiles() })
     }
 
     /// Buffers for `lanes` threads, `tiles` values between the passes.
@@ -91,7 +91,7 @@ impl SpectralOperator {
 
 impl TransformWorkspace {
     /// Swaps the buffers between the passes.
-    pub(in crate::kernel) fn trade_tiles(&mut self, other: &mut TransformWorkspace) {
+    pub(in crate::kernel) fn swap_tiles(&mut self, other: &mut TransformWorkspace) {
         std::mem::swap(&mut self.tiles, &mut other.tiles);
         std::mem::swap(&mut self.result, &mut other.result);
     }

@@ -5,7 +5,7 @@ use crate::rheology::fit::{MaterialFunction, Sample};
 
 /// One row of a table: its place, the abscissa, and one value for each column.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Row {
+pub(crate) struct TableRow {
     pub(crate) place: Place,
     pub(crate) x: f64,
     pub(crate) values: Vec<f64>,
@@ -96,9 +96,9 @@ const LEAST_NOISE: f64 = 1e-9;
 const LEAST_ROWS: usize = 4;
 
 /// Sorts the rows of a table. Returns its samples, in ascending order.
-pub(crate) fn validated(layout: Layout, rows: &mut [Row]) -> Result<Vec<Sample>> {
+pub(crate) fn validated(layout: Layout, rows: &mut [TableRow]) -> Result<Vec<Sample>> {
     let Layout { table, abscissa, columns, zero } = layout;
-    for Row { place, x, values } in &*rows {
+    for TableRow { place, x, values } in &*rows {
         let check = |column, value, inside, allowed| {
             if inside { Ok(()) } else { Err(TableError::OutOfRange { table, place: *place, column, value, allowed }) }
         };
@@ -122,7 +122,7 @@ pub(crate) fn validated(layout: Layout, rows: &mut [Row]) -> Result<Vec<Sample>>
 
 /// The greatest deviation of sorted rows from a monotone curve: an error where it exceeds what the scatter of the
 /// rows around explains, or the relative `scatter`, if it is stated.
-pub(crate) fn wrong_way(layout: Layout, rows: &[Row], scatter: Option<f64>) -> Result<f64> {
+pub(crate) fn wrong_way(layout: Layout, rows: &[TableRow], scatter: Option<f64>) -> Result<f64> {
     let Layout { table, columns, .. } = layout;
     let mut greatest: f64 = 0.0;
     for (index, &(column, function)) in columns.iter().enumerate() {

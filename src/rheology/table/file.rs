@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::error::{Error, Place, Result, TableError, TextError, positive};
 use crate::file::open;
 use crate::input::{Quantity, TakenColumn, TextFormat, TextTable, UnitOf, WantedColumn, name, same, symbol};
-use crate::rheology::table::data::{Deformation, Row};
+use crate::rheology::table::data::{Deformation, TableRow};
 use crate::rheology::table::{Experiment, Measurements};
 
 /// The units of a file in SI, which its headings must agree with, or the units of its headings.
@@ -227,7 +227,7 @@ impl Columns {
         Ok(Columns { taken: taken.into_iter().enumerate().map(sized).collect::<Result<_>>()?, complex, tan })
     }
 
-    pub(super) fn rows(&self, table: &TextTable) -> Result<Vec<Row>> {
+    pub(super) fn rows(&self, table: &TextTable) -> Result<Vec<TableRow>> {
         let sizes: Vec<f64> = self.taken.iter().map(TakenColumn::unit).collect::<Result<_, _>>()?;
         let rows = table.rows(&self.taken)?.into_iter().map(|row| {
             let mut values: Vec<f64> = row.values.iter().zip(&sizes).map(|(value, size)| value * size).collect();
@@ -236,7 +236,7 @@ impl Columns {
                 values[1] = if self.complex { modulus / tan.hypot(1.0) } else { modulus };
                 values[2] = values[1] * tan;
             }
-            Row { place: Place::Line(row.line), x: values.remove(0), values }
+            TableRow { place: Place::Line(row.line), x: values.remove(0), values }
         });
         Ok(rows.collect())
     }

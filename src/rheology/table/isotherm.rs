@@ -6,7 +6,7 @@ use super::file::{Columns, Units};
 use super::{Experiment, Measurements};
 use crate::error::{Result, within};
 use crate::input::{Quantity, TextFormat, TextTable, UnitOf, WantedColumn};
-use crate::rheology::table::data::{Deformation, Row};
+use crate::rheology::table::data::{Deformation, TableRow};
 use crate::values::Counted;
 
 const TEMPERATURE: WantedColumn = WantedColumn {
@@ -36,7 +36,7 @@ pub struct Isotherm {
     pub(super) experiment: Experiment,
     pub(super) deformation: Deformation,
     /// Ascending.
-    pub(super) rows: Vec<Row>,
+    pub(super) rows: Vec<TableRow>,
     /// The stated scatter of the values.
     pub(super) scatter: Option<f64>,
 }
@@ -70,7 +70,7 @@ impl Isotherm {
         [ends[0].min(ends[1]), ends[0].max(ends[1])]
     }
 
-    pub(super) fn log_time(&self, row: &Row) -> f64 {
+    pub(super) fn log_time(&self, row: &TableRow) -> f64 {
         if self.experiment.layout().zero { row.x.ln() } else { -row.x.ln() }
     }
 }
@@ -125,11 +125,11 @@ impl Isotherm {
         };
         let deformation = columns.deformation();
         columns.taken.push(temperature);
-        let with_temperature = |mut row: Row| (row.values.pop().unwrap_or(f64::NAN) + zero, row);
-        let mut rows: Vec<(f64, Row)> = columns.rows(table)?.into_iter().map(with_temperature).collect();
+        let with_temperature = |mut row: TableRow| (row.values.pop().unwrap_or(f64::NAN) + zero, row);
+        let mut rows: Vec<(f64, TableRow)> = columns.rows(table)?.into_iter().map(with_temperature).collect();
         rows.sort_by(|a, b| a.0.total_cmp(&b.0));
         let groups = rows.chunk_by(|a, b| b.0 - a.0 < APART);
-        let isotherm = |rows: &[(f64, Row)]| {
+        let isotherm = |rows: &[(f64, TableRow)]| {
             let mean = rows.iter().map(|row| row.0).sum::<f64>() / rows.len() as f64;
             let table = Measurements::from_rows(experiment, rows.iter().map(|row| row.1.clone()).collect())?;
             Isotherm::new(mean, Measurements { deformation, columns: columns.taken.clone(), ..table })

@@ -1,6 +1,6 @@
 use crate::error::{Error, Place, Result, TableError, in_order, least_length, within};
 use crate::rheology::table::Measurements;
-use crate::rheology::table::data::{Deformation, Row};
+use crate::rheology::table::data::{Deformation, TableRow};
 use crate::rheology::table::isotherm::Isotherm;
 use crate::rheology::table::shift::{Shift, shift_between};
 use crate::rheology::{CreepSeries, MaterialFunction, ShiftedRheology, Tension, TimeTemperature};
@@ -232,16 +232,16 @@ impl MasterCurve {
     pub fn points(&self) -> Vec<(f64, MaterialFunction, f64)> {
         let functions = self.isotherms[0].experiment.layout().columns.iter().map(|&(_, function)| function);
         let values =
-            |row: Row| functions.clone().zip(row.values).map(move |(function, value)| (row.x, function, value));
+            |row: TableRow| functions.clone().zip(row.values).map(move |(function, value)| (row.x, function, value));
         self.reduced().flat_map(values).collect()
     }
 
     /// The rows of all isotherms, at reduced times or frequencies.
-    fn reduced(&self) -> impl Iterator<Item = Row> {
+    fn reduced(&self) -> impl Iterator<Item = TableRow> {
         self.isotherms.iter().zip(&self.shifts).flat_map(|(isotherm, shift)| {
             let factor = if isotherm.experiment.layout().zero { (-shift.log).exp() } else { shift.log.exp() };
-            let values = |row: &Row| row.values.iter().map(|value| value / shift.vertical.exp()).collect();
-            isotherm.rows.iter().map(move |row| Row { x: row.x * factor, values: values(row), ..row.clone() })
+            let values = |row: &TableRow| row.values.iter().map(|value| value / shift.vertical.exp()).collect();
+            isotherm.rows.iter().map(move |row| TableRow { x: row.x * factor, values: values(row), ..row.clone() })
         })
     }
 
@@ -283,7 +283,7 @@ impl MasterCurve {
 
     fn fitted(&self, deformation: Deformation) -> Result<CreepSeries> {
         self.isotherms.iter().try_for_each(|isotherm| isotherm.deformation.accepts(deformation))?;
-        let mut rows: Vec<Row> = self.reduced().collect();
+        let mut rows: Vec<TableRow> = self.reduced().collect();
         rows.sort_by(|a, b| a.x.total_cmp(&b.x));
         for k in 0..rows.len() {
             if k > 0 && rows[k].x <= rows[k - 1].x {

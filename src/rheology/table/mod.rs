@@ -18,7 +18,7 @@ use crate::rheology::fit::{FitReport, MOST_MISFIT, Sample, Search};
 use crate::rheology::{CreepSeries, Tension};
 use crate::values::Counted;
 pub use data::Experiment;
-use data::{Deformation, Row, validated, wrong_way};
+use data::{Deformation, TableRow, validated, wrong_way};
 
 /// Denser tables are averaged to this many values per decade, ...
 const MEANS_PER_DECADE: f64 = 24.0;
@@ -49,7 +49,7 @@ pub struct Measurements {
     experiment: Experiment,
     deformation: Deformation,
     /// Ascending.
-    rows: Vec<Row>,
+    rows: Vec<TableRow>,
     samples: Vec<Sample>,
     /// Relative standard deviation of the values, if it is stated.
     scatter: Option<f64>,
@@ -165,11 +165,11 @@ impl Measurements {
     }
 
     fn of_values(experiment: Experiment, table: impl Iterator<Item = (f64, Vec<f64>)>) -> Result<Measurements> {
-        let row = |(k, (x, values))| Row { place: Place::Entry(k), x, values };
+        let row = |(k, (x, values))| TableRow { place: Place::Entry(k), x, values };
         Measurements::from_rows(experiment, table.enumerate().map(row).collect())
     }
 
-    fn from_rows(experiment: Experiment, mut rows: Vec<Row>) -> Result<Measurements> {
+    fn from_rows(experiment: Experiment, mut rows: Vec<TableRow>) -> Result<Measurements> {
         let samples = validated(experiment.layout(), &mut rows)?;
         let (deformation, scatter, columns) = (Deformation::Unnamed, None, Vec::new());
         Ok(Measurements { experiment, deformation, rows, samples, scatter, columns })

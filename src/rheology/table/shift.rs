@@ -6,7 +6,7 @@
 //! fewest decades of the union, so that two ends which match by chance are not taken for the overlap; all columns
 //! refine it.
 
-use super::data::{Row, median_scatter};
+use super::data::{TableRow, median_scatter};
 use super::isotherm::Isotherm;
 use crate::error::{Result, TableError};
 use crate::numeric;
@@ -227,7 +227,7 @@ fn place(isotherm: &Isotherm, log_time: f64) -> Option<(usize, f64)> {
     // rows of frequencies descend in time
     let rising = at(0) < at(isotherm.rows.len() - 1);
     let is_before =
-        |row: &Row| if rising { isotherm.log_time(row) < log_time } else { isotherm.log_time(row) > log_time };
+        |row: &TableRow| if rising { isotherm.log_time(row) < log_time } else { isotherm.log_time(row) > log_time };
     let next = isotherm.rows.partition_point(is_before);
     let k = next.max(1);
     let part = (log_time - at(k - 1)) / (at(k.min(isotherm.rows.len() - 1)) - at(k - 1));

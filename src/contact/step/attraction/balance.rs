@@ -1,8 +1,8 @@
-//! The balance of a step in the gap: how the load enters its equations.
+//! The equations of a step in the gap: how the load enters them, and what they do to a field.
 
 use super::AttractedStep;
 use crate::equilibrium::window::Window;
-use crate::kernel::PeriodInverse;
+use crate::kernel::{Mean, PeriodInverse};
 use crate::linalg::solve_normal_equations;
 use crate::load::Load;
 use crate::parallel::Rows;
@@ -24,9 +24,16 @@ pub(super) struct Balance {
     pub(super) soft: f64,
     /// Whether the mean of x is given.
     pub(super) held: bool,
-    /// The stiffness of M, and the compliance of K, of the mean.
-    pub(super) inverse: [f64; 2],
+    pub(super) mean: Mean,
     pub(super) tilts: Option<Tilts>,
+}
+
+/// What applies the equations to fields, and counts it.
+pub(super) struct Operators<'a> {
+    pub(super) balance: Balance,
+    pub(super) inverse: &'a mut PeriodInverse,
+    pub(super) window: &'a mut Window,
+    pub(super) counts: &'a mut Counts,
 }
 
 /// Motions m of a body that tilts freely, with the modes B: x = c N q − B m, and Bᵀ q + D m carries the load, D being the
@@ -58,27 +65,81 @@ impl Tilts {
     }
 }
 
-impl Balance {
-    /// q of the lift x.
-    pub(super) fn tractions(
-        &self,
-        inverse: &mut PeriodInverse,
-        window: &mut Window,
-        x: &[f64],
-        q: &mut [f64],
-        linear: bool,
-    ) {
+impl Operators<'_> {
+    pub(super) fn rows(&self) -> &Rows {
+        self.window.kernel.rows()
+    }
+
+    /// Writes q of the lift x.
+    pub(super) fn tractions(&mut self, x: &[f64], q: &mut [f64]) {
+        self.apply(x, q, false);
+    }
+
+    /// Writes M d/c, by which q changes with the lift.
+    pub(super) fn stiffen(&mut self, d: &[f64], image: &mut [f64]) {
+        self.apply(d, image, true);
+    }
+
+    fn apply(&mut self, x: &[f64], q: &mut [f64], linear: bool) {
+        let Operators { balance, inverse, window, counts } = self;
+        counts.convolutions += 1;
         inverse.apply(x, q, &mut window.work);
         let rows = window.kernel.rows();
         let mean = rows.sum(x) / x.len() as f64;
-        let add = (self.of_mean - self.inverse[0] / self.compliance) * mean + if linear { 0.0 } else { self.offset };
-        q.iter_mut().for_each(|q| *q = *q / self.compliance + add);
-        if let Some(tilts) = &self.tilts {
+        let stiffness = balance.of_mean - balance.mean.stiffness / balance.compliance;
+        let add = stiffness * mean + if linear { 0.0 } else { balance.offset };
+        q.iter_mut().for_each(|q| *q = *q / balance.compliance + add);
+        if let Some(tilts) = &balance.tilts {
             let motion = tilts.motion(rows, x, linear);
             q.iter_mut().enumerate().for_each(|(k, q)| *q += tilts.at(motion, k));
         }
     }
 
+    /// Applies c K, which is about the inverse of M/c.
+    pub(super) fn smooth(&mut self, field: &mut [f64]) {
+        let Operators { balance: Balance { compliance: c, soft, mean, .. }, window, counts, .. } = self;
+        counts.convolutions += 1;
+        let add = (*soft - *c * mean.compliance) * window.kernel.rows().sum(field) / field.len() as f64;
+        window.kernel.apply_in_place(field, &mut window.work);
+        field.iter_mut().for_each(|y| *y = *c * *y + add);
+    }
+
+    /// Moves x to what the wall and the load allow ([`Balance::project`]).
+    pub(super) fn project(&self, gap: &[f64], x: &mut [f64]) -> bool {
+        self.balance.project(self.rows(), gap, x)
+    }
+
+    /// Gives the balance the free tilts of the body, with the kernel that the window has.
+    pub(super) fn free_tilts(&mut self, problem: &AttractedStep<'_>) {
+        let AttractedStep { state, step, wanted, .. } = *problem;
+        let region = &state.held.region;
+        let modes = region.modes(wanted);
+        let mut load = modes.load().map(|unit| wanted.total * unit);
+        // M with the stiffness of the mean that the bodies have
+        let balance = &mut self.balance;
+        (balance.of_mean, balance.offset) = (1.0 / (balance.compliance * balance.mean.compliance), 0.0);
+        let images = [0, 1, 2].map(|j| {
+            let mode: Vec<f64> = (0..region.len()).map(|k| modes.at(k)[j]).collect();
+            let mut image = vec![0.0; mode.len()];
+            if modes.free()[j] {
+                self.stiffen(&mode, &mut image);
+            }
+            image
+        });
+        let rows = self.window.kernel.rows();
+        let mut gram = [0, 1, 2].map(|i| rows.sum_terms(|k| Some([0, 1, 2].map(|j| modes.at(k)[i] * images[j][k]))));
+        if let Load::Spring { stiffness, drive, .. } = step.loads[0] {
+            let stiffness = stiffness / region.cell_area();
+            gram[0][0] += stiffness;
+            load[0] = stiffness * (drive - step.indenter.gap().datum);
+        }
+        let mut tilts = Tilts { images, gram, load, carried: [0.0; 3] };
+        tilts.carried = tilts.solve(load);
+        self.balance.tilts = Some(tilts);
+    }
+}
+
+impl Balance {
     /// p of a cell.
     pub(super) fn offset_at(&self, k: usize) -> f64 {
         self.offset + self.tilts.as_ref().map_or(0.0, |tilts| tilts.at(tilts.carried, k))
@@ -119,8 +180,8 @@ impl Balance {
 
 impl AttractedStep<'_> {
     pub(super) fn balance(&self, window: &Window, inverse: &PeriodInverse) -> Balance {
-        let (c, cells, wanted) = (self.given[0], window.kernel.rows().len() as f64, self.wanted);
-        let PeriodInverse { mean: [stiffness, compliance], .. } = *inverse;
+        let (c, cells, wanted) = (self.compliance, window.kernel.rows().len() as f64, self.wanted);
+        let mean @ Mean { stiffness, compliance } = inverse.mean;
         let held = compliance == 0.0 && !wanted.translation;
         let [of_mean, offset] = match self.step.loads[0] {
             Load::Approach { .. } if held => [0.0, 0.0],
@@ -132,41 +193,6 @@ impl AttractedStep<'_> {
             }
         };
         let soft = 1.0 / (of_mean + 0.5 * stiffness / c);
-        Balance { compliance: c, of_mean, offset, soft, held, inverse: [stiffness, compliance], tilts: None }
-    }
-
-    /// Gives the balance the free tilts of the body, with the kernel that the window has.
-    pub(super) fn free_tilts(
-        &self,
-        balance: &mut Balance,
-        inverse: &mut PeriodInverse,
-        window: &mut Window,
-        counts: &mut Counts,
-    ) {
-        let AttractedStep { state, step, wanted, .. } = *self;
-        let (region, [_, compliance]) = (&state.held.region, inverse.mean);
-        let modes = region.modes(wanted);
-        let mut load = modes.load().map(|unit| wanted.total * unit);
-        // M with the stiffness of the mean that the bodies have
-        (balance.of_mean, balance.offset) = (1.0 / (balance.compliance * compliance), 0.0);
-        let images = [0, 1, 2].map(|j| {
-            let mode: Vec<f64> = (0..region.len()).map(|k| modes.at(k)[j]).collect();
-            let mut image = vec![0.0; mode.len()];
-            if modes.free()[j] {
-                balance.tractions(inverse, window, &mode, &mut image, true);
-                counts.convolutions += 1;
-            }
-            image
-        });
-        let rows = window.kernel.rows();
-        let mut gram = [0, 1, 2].map(|i| rows.sum_terms(|k| Some([0, 1, 2].map(|j| modes.at(k)[i] * images[j][k]))));
-        if let Load::Spring { stiffness, drive, .. } = step.loads[0] {
-            let stiffness = stiffness / region.cell_area();
-            gram[0][0] += stiffness;
-            load[0] = stiffness * (drive - step.indenter.gap().datum);
-        }
-        let mut tilts = Tilts { images, gram, load, carried: [0.0; 3] };
-        tilts.carried = tilts.solve(load);
-        balance.tilts = Some(tilts);
+        Balance { compliance: c, of_mean, offset, soft, held, mean, tilts: None }
     }
 }

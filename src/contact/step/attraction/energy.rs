@@ -1,5 +1,6 @@
 //! The energy of an iteration in the gap and of the state before the step.
 
+use super::balance::Operators;
 use super::descent::Descent;
 use super::{Attracted, AttractedStep};
 use crate::equilibrium::Equilibrium;
@@ -11,11 +12,19 @@ use crate::solver::{RigidMotion, Solution};
 const LEAST_RELEASED: f64 = 1e-3;
 const CELLS: f64 = 10.0;
 
+/// An energy over the area of a cell.
+#[derive(Clone, Copy)]
+pub(super) struct Energy {
+    pub(super) value: f64,
+    /// The sum of the magnitudes of its parts.
+    pub(super) scale: f64,
+}
+
 impl AttractedStep<'_> {
-    /// The energy over the area of a cell, and the sum of its parts, of a state with the free motion `motion`, from
-    /// z − s, K (z − s), the gap and the work of the wall of a cell.
-    fn energy(&self, motion: RigidMotion, cell: impl Fn(usize) -> [f64; 4] + Sync) -> [f64; 2] {
-        let AttractedStep { state, wanted, law, given: [c, _], .. } = *self;
+    /// The energy of a state with the free motion `motion`, from z − s, K (z − s), the gap and the work of the wall of
+    /// a cell.
+    fn energy(&self, motion: RigidMotion, cell: impl Fn(usize) -> [f64; 4] + Sync) -> Energy {
+        let AttractedStep { state, wanted, law, compliance: c, .. } = *self;
         let [elastic, attracted, wall] = state.held.region.rows().sum_terms(|k| {
             let [traction, potential, open, wall] = cell(k);
             open.is_finite().then(|| [0.5 * c * traction * potential, law.energy(open), wall])
@@ -28,7 +37,8 @@ impl AttractedStep<'_> {
             }
             Load::Approach { .. } => 0.0,
         };
-        [elastic - attracted - wall + of_load, elastic.abs() + attracted + of_load.abs()]
+        let scale = elastic.abs() + attracted + of_load.abs();
+        Energy { value: elastic - attracted - wall + of_load, scale }
     }
 
     /// The free part of the motion of a state before the step.
@@ -42,10 +52,9 @@ impl AttractedStep<'_> {
         }
     }
 
-    /// The energy over the area of a cell, and the sum of its parts, of a state with the potential K (z − s), in the
-    /// gap before any traction: the wall holds its cells while this gap changes by what a step begins with.
-    fn energy_of(&self, solution: &Solution, motion: RigidMotion, gap: &[f64]) -> [f64; 2] {
-        let (state, c) = (self.state, self.given[0]);
+    /// The energy of a state with the potential K (z − s), in the gap before any traction: the wall holds its cells while this gap changes by what a step begins with.
+    fn energy_of(&self, solution: &Solution, motion: RigidMotion, gap: &[f64]) -> Energy {
+        let (state, c) = (self.state, self.compliance);
         let Solution { pressure, attraction, potential, .. } = solution;
         let cell = |k: usize| {
             let h = gap[k] + c * potential[k] - motion.at(state.held.region.center(k));
@@ -58,7 +67,7 @@ impl AttractedStep<'_> {
 
     /// Whether the contact was in no state before: without the attraction that its gap has.
     fn is_first(&self, trial: &Trial) -> bool {
-        let AttractedStep { state, step, law, given: [c, _], .. } = *self;
+        let AttractedStep { state, step, law, compliance: c, .. } = *self;
         let Equilibrium { sum, ref motions, ref solution, .. } = state.held.current;
         let back = step.request().prescribed(0) + RigidMotion { approach: step.indenter.gap().datum, tilt: [0.0; 2] };
         let pulls = |k: usize| {
@@ -72,7 +81,7 @@ impl AttractedStep<'_> {
     /// What the energy bends up on the straight way between two states, in the gap of the trial: Σ(Δq cKΔq + k Δω²),
     /// and ΣΔs Δh of the attraction, over the area of a cell.
     fn bends_up(&self, gap: &[f64], [before, now]: [(&Solution, RigidMotion); 2]) -> [f64; 2] {
-        let (state, law, c) = (self.state, self.law, self.given[0]);
+        let (state, law, c) = (self.state, self.law, self.compliance);
         let [convex, softened] = state.held.region.rows().sum_terms(|k| {
             let at = state.held.region.center(k);
             let [h0, h1] = [before, now].map(|(solution, motion)| gap[k] + c * solution.potential[k] - motion.at(at));
@@ -101,26 +110,27 @@ impl AttractedStep<'_> {
         let current = &self.state.held.current;
         let motion = self.state.held.region.modes(trial.free[0]).physical(trial.solution.motions[0]);
         let ends = [(&current.solution, self.free_motion(current)), (&trial.solution, motion)];
-        let [[before, _], [now, scale]] = ends.map(|(solution, motion)| self.energy_of(solution, motion, &trial.gap));
+        let [before, now] = ends.map(|(solution, motion)| self.energy_of(solution, motion, &trial.gap));
         let [convex, softened] = self.bends_up(&trial.gap, ends);
         let report = &mut own.report;
-        report.released = self.state.held.region.cell_area() * (before - now);
+        report.released = self.state.held.region.cell_area() * (before.value - now.value);
         report.unaccounted = report.released - 0.5 * self.state.held.region.cell_area() * (convex + softened);
         report.bend = 1.0 + softened / convex;
-        let much = LEAST_RELEASED * scale.max(CELLS * self.law.energy(0.0));
+        let much = LEAST_RELEASED * now.scale.max(CELLS * self.law.energy(0.0));
         report.suspected = report.may_jump(self.state.held.region.cell_area() * much) && !self.is_first(trial);
     }
 }
 
 impl Descent<'_> {
-    /// E over the area of a cell, and the sum of its parts.
-    pub(super) fn energy(&self) -> [f64; 2] {
-        let Descent { problem, balance, window, trial, .. } = self;
+    /// E of the trial.
+    pub(super) fn energy(&self) -> Energy {
+        let Descent { problem, operators: Operators { balance, window, .. }, trial, .. } = self;
         let (x, q, gap) = (&trial.solution.potential, &trial.solution.attraction, &trial.gap);
-        window.kernel.rows().sum_terms(|k| {
+        let [value, scale] = window.kernel.rows().sum_terms(|k| {
             let (h, stored) = (gap[k] + x[k], 0.5 * x[k] * (q[k] + balance.offset_at(k)));
             let attracted = if h.is_finite() { problem.law.energy(h.max(0.0)) } else { 0.0 };
             Some([stored - attracted, stored.abs() + attracted + f64::MIN_POSITIVE])
-        })
+        });
+        Energy { value, scale }
     }
 }

@@ -10,8 +10,10 @@ mod descent;
 mod energy;
 mod front;
 mod gap_direction;
+mod lift;
 mod near_field;
 mod passes;
+mod softest;
 mod split;
 
 pub(in crate::contact) use passes::Attracted;
@@ -50,8 +52,7 @@ pub(super) struct AttractedStep<'a> {
     pub(super) state: &'a State,
     pub(super) step: &'a Step<'a>,
     pub(super) bodies: RigidBodies<'a>,
-    /// The compliance of the step, and the greatest motion taken from its gap.
-    pub(super) given: [f64; 2],
+    pub(super) compliance: f64,
     pub(super) stop: Stop<'a>,
     /// The free motions, and the load that they carry without attraction.
     pub(super) wanted: Freedom,
@@ -66,7 +67,7 @@ impl AttractedStep<'_> {
         attracted: &mut Option<Box<Attracted>>,
     ) -> Result<()> {
         let time = self.step.interval.time;
-        if self.given[0] == 0.0 {
+        if self.compliance == 0.0 {
             let what = "a jump of surfaces that attract each other (take a short step instead)";
             return Err(StepError::NoElasticResponse { time, what }.into());
         }

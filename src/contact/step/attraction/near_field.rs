@@ -8,6 +8,7 @@
 //! the new F (z − s) changes nothing any more. What is left of an error after a round is about the share of F in the
 //! potential.
 
+use super::balance::Operators;
 use super::descent::Descent;
 use super::{Attracted, AttractedStep};
 use crate::equilibrium::Trial;
@@ -46,7 +47,8 @@ impl AttractedStep<'_> {
         self.begin_in_gap(window, trial);
         (own.softness, own.exactness, own.softest) = (0.0, 1.0, None);
         let (near, balance) = (window.near.is_some(), self.balance(window, &inverse));
-        let mut descent = Descent { problem: self, balance, inverse: &mut inverse, own, window, trial, counts };
+        let operators = Operators { balance, inverse: &mut inverse, window, counts };
+        let mut descent = Descent { problem: self, operators, own, trial };
         let solved = if near { descent.run_in_rounds() } else { descent.run() };
         window.inverse = Some(inverse);
         solved
@@ -87,14 +89,12 @@ impl Descent<'_> {
     fn run_in_rounds(&mut self) -> Result<()> {
         let problem = self.problem;
         if problem.wanted.tilts() {
-            self.with_near_field(|Descent { problem, balance, inverse, window, counts, .. }| {
-                problem.free_tilts(balance, inverse, window, counts);
-            });
+            self.with_near_field(|descent| descent.operators.free_tilts(problem));
         }
         self.split();
-        let (c, mut last, mut relaxation) = (self.balance.compliance, f64::INFINITY, None);
+        let (c, mut last, mut relaxation) = (problem.compliance, f64::INFINITY, None);
         for _ in 0..MAX_ROUNDS {
-            problem.open_gap(self.window, self.trial);
+            problem.open_gap(self.operators.window, self.trial);
             for_each_band([&mut self.trial.gap], |first, [gap]| {
                 gap.iter_mut().zip(&self.own.far[first..]).for_each(|(gap, far)| *gap += c * far);
             });
@@ -122,11 +122,11 @@ impl Descent<'_> {
 
     /// Computes with N in the place of K.
     fn with_near_field<T>(&mut self, compute: impl FnOnce(&mut Self) -> T) -> T {
-        let before = self.counts.convolutions;
-        self.window.trade_kernels();
+        let before = self.operators.counts.convolutions;
+        self.operators.window.swap_near_field();
         let done = compute(self);
-        self.window.trade_kernels();
-        let counts = &mut *self.counts;
+        let Operators { window, counts, .. } = &mut self.operators;
+        window.swap_near_field();
         counts.preconditioner_applications += self.problem.near_price() * (counts.convolutions - before);
         counts.convolutions = before;
         done
@@ -143,10 +143,10 @@ impl Descent<'_> {
     /// Methods Eng. 1, 1969): where contact and attraction take most of the grid, F is no small part. Returns
     /// Σ (z + s) |ΔF (z − s)| and the maximum |ΔF (z − s)|, and the part; `relaxation` is that of the round before.
     fn correct(&mut self, relaxation: Option<f64>) -> ([f64; 2], f64) {
-        let Descent { own, window, trial, counts, .. } = self;
+        let Descent { own, operators, trial, .. } = self;
         let Solution { pressure, attraction, potential, .. } = &trial.solution;
-        let (exact, far, changes) = own.image_of_net(&trial.solution, window);
-        counts.convolutions += 1;
+        let (exact, far, changes) = own.image_of_net(&trial.solution, operators.window);
+        operators.counts.convolutions += 1;
         let (mut most, mut sums) = (0.0_f64, [0.0; 3]);
         for (k, change) in changes.iter_mut().enumerate() {
             let before = std::mem::replace(change, exact[k] - potential[k] - far[k]);
@@ -164,9 +164,9 @@ impl Descent<'_> {
 
     /// Writes N (z − s) to the potential, and what it lacks of K (z − s) to the far field.
     fn split(&mut self) {
-        self.with_near_field(|Descent { own, window, trial, counts, .. }| {
-            let (near, far, _) = own.image_of_net(&trial.solution, window);
-            counts.convolutions += 1;
+        self.with_near_field(|Descent { own, operators, trial, .. }| {
+            let (near, far, _) = own.image_of_net(&trial.solution, operators.window);
+            operators.counts.convolutions += 1;
             std::mem::swap(far, &mut trial.solution.potential);
             far.iter_mut().zip(near).for_each(|(far, near)| *far -= near);
             trial.solution.potential.copy_from_slice(near);

@@ -10,7 +10,8 @@ const LEFT_IN_A_HALF: f64 = 0.4;
 /// What a step works in, besides the trial, and how the last step went.
 #[derive(Debug, Clone)]
 pub(crate) struct Attracted {
-    fields: [Vec<f64>; 4],
+    /// Between two steps the first three hold the [weights](Attracted::weights).
+    pub(super) in_gap: InGap,
     /// F (z − s) of the [far field](super::near_field).
     pub(super) far: Vec<f64>,
     /// What it lacks after the last round.
@@ -30,13 +31,21 @@ pub(crate) struct Attracted {
 }
 
 /// The fields of a [descent](super::descent) in the gap.
-pub(super) struct InGap<'a> {
+#[derive(Debug, Clone)]
+pub(super) struct InGap {
     /// The direction d, and M d/c.
-    pub(super) direction: &'a mut Vec<f64>,
-    pub(super) image: &'a mut Vec<f64>,
+    pub(super) direction: Vec<f64>,
+    pub(super) image: Vec<f64>,
     /// Lift and traction that are tried; between two trials K r, and r of the iteration before.
-    pub(super) lift: &'a mut Vec<f64>,
-    pub(super) traction: &'a mut Vec<f64>,
+    pub(super) lift: Vec<f64>,
+    pub(super) traction: Vec<f64>,
+}
+
+impl InGap {
+    /// Turns the direction round.
+    pub(super) fn reverse(&mut self) {
+        self.direction.iter_mut().chain(&mut self.image).for_each(|value| *value = -*value);
+    }
 }
 
 /// How a step of surfaces that attract each other went
@@ -103,7 +112,7 @@ impl Attracted {
     pub(super) fn new(cells: usize) -> Attracted {
         let field = || vec![0.0; cells];
         Attracted {
-            fields: [field(), field(), field(), field()],
+            in_gap: InGap { direction: field(), image: field(), lift: field(), traction: field() },
             far: field(),
             change: field(),
             softness: 0.0,
@@ -115,18 +124,13 @@ impl Attracted {
         }
     }
 
-    pub(super) fn in_gap(&mut self) -> InGap<'_> {
-        let [direction, image, lift, traction] = &mut self.fields;
-        InGap { direction, image, lift, traction }
-    }
-
     /// K (z − s), or N (z − s) in a window that has traded its kernel, and the far field.
     pub(super) fn image_of_net<'a>(
         &'a mut self,
         solution: &Solution,
         window: &mut Window,
     ) -> (&'a [f64], &'a mut Vec<f64>, &'a mut Vec<f64>) {
-        let Attracted { fields: [net, image, ..], far, change, .. } = self;
+        let Attracted { in_gap: InGap { direction: net, image, .. }, far, change, .. } = self;
         let tractions = solution.pressure.iter().zip(&solution.attraction);
         net.iter_mut().zip(tractions).for_each(|(net, (z, s))| *net = z - s);
         window.kernel.apply(net, image, &mut window.work);
@@ -140,12 +144,13 @@ impl Attracted {
 
     /// |z − s| at the end of a step that was solved, at its start, and at the start of the step before.
     pub(in crate::contact) fn weights(&self) -> [&[f64]; 3] {
-        let [now, start, before, _] = &self.fields;
+        let InGap { direction: now, image: start, lift: before, .. } = &self.in_gap;
         [now, start, before]
     }
 
     pub(super) fn keep_weights(&mut self, solutions: [&Solution; 3]) {
-        for (weights, Solution { pressure, attraction, .. }) in self.fields.iter_mut().zip(solutions) {
+        let InGap { direction, image, lift, .. } = &mut self.in_gap;
+        for (weights, Solution { pressure, attraction, .. }) in [direction, image, lift].into_iter().zip(solutions) {
             for (weight, (z, s)) in weights.iter_mut().zip(pressure.iter().zip(attraction)) {
                 // no cell counts as one that the bodies have yet to meet
                 *weight = (z - s).abs().max(f64::MIN_POSITIVE);

@@ -37,7 +37,7 @@ impl ViscoelasticContact {
         (*end).clone_from(state);
         state.roll_back();
         let start = self.load_like(0, &step.loads[0]);
-        let mut search = Search { contact: self, step, start, released: whole.released, counts: Counts::default() };
+        let mut search = JumpSearch { contact: self, step, start, released: whole.released, counts: Counts::default() };
         let jumps = search.jumps(0.0, 1.0, &end.held.current.solution);
         let (counts, jumped) = (search.counts, *jumps.as_ref().unwrap_or(&true));
         self.go_to(&end);
@@ -67,7 +67,7 @@ impl ViscoelasticContact {
 }
 
 /// The search for a jump in a step that was taken.
-struct Search<'a> {
+struct JumpSearch<'a> {
     contact: &'a mut ViscoelasticContact,
     step: &'a Step<'a>,
     start: Load,
@@ -75,7 +75,7 @@ struct Search<'a> {
     counts: Counts,
 }
 
-impl Search<'_> {
+impl JumpSearch<'_> {
     /// Whether surfaces jump between two shares of the step, from the state of the contact to `end`. Where they do
     /// not, the contact comes to the end.
     fn jumps(&mut self, from: f64, to: f64, end: &Solution) -> Result<bool> {
@@ -85,7 +85,7 @@ impl Search<'_> {
 
     /// Whether surfaces jump in a part of the step, which is only compared with its start where its `end` is known.
     fn jumps_in_part(&mut self, from: f64, to: f64, end: Option<&Solution>) -> Result<bool> {
-        let Search { contact, step, .. } = self;
+        let JumpSearch { contact, step, .. } = self;
         let (part, begun) = (to - from, contact.time());
         let left = step.interval.time - begun;
         let time = if to == 1.0 { step.interval.time } else { begun + left * part / (1.0 - from) };

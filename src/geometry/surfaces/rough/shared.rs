@@ -63,7 +63,7 @@ impl Rough {
     pub fn shared(grid: &Grid, spec: RoughSpec, ranks: &Arc<dyn Ranks>) -> Result<SharedRough> {
         let [n1, n2] = grid.cells();
         let rows = Rows::of_rank([n1, n2], Arc::clone(ranks));
-        rows.unless_lost(|| {
+        rows.or_loss(|| {
             let columns = part(n2 / 2 + 1, ranks.rank(), ranks.size());
             let bytes = 40 * n2.max(2) as u128 * (n1 * columns.len() / (n2 / 2 + 1)).max(rows.own().len()) as u128;
             let heights = heights(grid, &spec, &rows, bytes)?;
