@@ -111,13 +111,11 @@ clone_by_fields! { Weights {
 const LONGEST_CONTINUED: f64 = 4.0;
 /// ... nor one of a body with an immediate dashpot, whose errors grow beyond 1 + √2.
 const LONGEST_CONTINUED_OF_DASHPOT: f64 = 2.41;
-/// Steps whose lengths are farther apart than this factor are not used to extrapolate each other: its square must be
-/// a number.
+/// Steps farther apart in length than this factor do not extrapolate each other: its square must be a number.
 const FARTHEST_APART: f64 = 1e150;
 /// A step shorter than this fraction of the step before was cut by an event: it does not correct the step before.
 const MIN_CORRECTING: f64 = 0.5;
-/// Stresses q_i below this \[Pa\] are forgotten, far above the smallest numbers of all: no sum with a stress that
-/// matters shows them.
+/// Stresses q_i below this \[Pa\] are forgotten, far above the smallest numbers of all: no sum shows them.
 const NOTHING: f64 = 1e-200;
 /// Number of steps from one forgetting to the next. A stress that keeps half or more in each of them keeps 5e-20 in
 /// all; one that keeps less passes the smallest numbers by itself.

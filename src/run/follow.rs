@@ -16,7 +16,7 @@ use crate::run::histories::{Histories, RunHistory};
 use crate::run::progress::{Progress, RunProgress, Stepping, rounding};
 use crate::run::{Contact, OwnedOrBorrowed};
 
-/// Times up to here are the one at which a step has ended.
+/// Times up to here are that of the end of a step.
 fn covered_by(time: f64) -> f64 {
     time + rounding(time)
 }
@@ -344,7 +344,6 @@ impl<'a, C: Contact> Run<'a, C> {
         let (now, until) = (contact.time(), *until);
         let attracts = contact.attracts();
         histories.loads(loads, |history| history.checked_at(now, attracts))?;
-        // it may act in both directions
         loads.extend(contact.lateral().map(|along| along.checked_at(now, true)).transpose()?);
         let jumps = !control.bears(contact, loads);
         if !jumps && now >= until {

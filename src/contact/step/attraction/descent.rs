@@ -16,9 +16,7 @@
 use std::sync::atomic::Ordering;
 
 use super::balance::Operators;
-use super::energy::Energy;
 use super::front::{Front, Moved};
-use super::gap_direction::Gradient;
 use super::passes::InGap;
 use super::{Attracted, AttractedStep};
 use crate::equilibrium::Trial;
@@ -57,6 +55,26 @@ const UNSTABLE: f64 = -1e-5;
 const FRESH: usize = 50;
 /// Bodies without contact whose attraction carries this part of the load, or less, fly apart.
 const CARRIED: f64 = 0.5;
+
+/// An energy over the area of a cell.
+#[derive(Clone, Copy)]
+pub(super) struct Energy {
+    pub(super) value: f64,
+    /// The sum of the magnitudes of its parts.
+    pub(super) scale: f64,
+}
+
+/// The gradient of E on the cells that may move.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Gradient {
+    /// λ.
+    pub(super) multiplier: f64,
+    /// The greatest |r|, over the greatest traction.
+    pub(super) greatest: f64,
+    /// Σ s, and the number of cells at the wall.
+    pub(super) attraction: f64,
+    pub(super) at_wall: f64,
+}
 
 /// A descent in the gap: what it reads, and what it writes. In the trial x takes the place of the potential, q of the
 /// attraction, and r of the pressure.

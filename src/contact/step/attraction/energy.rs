@@ -1,7 +1,7 @@
 //! The energy of an iteration in the gap and of the state before the step.
 
 use super::balance::Operators;
-use super::descent::Descent;
+use super::descent::{Descent, Energy};
 use super::{Attracted, AttractedStep};
 use crate::equilibrium::Equilibrium;
 use crate::equilibrium::Trial;
@@ -11,14 +11,6 @@ use crate::solver::{RigidMotion, Solution};
 /// Jumps release more than this part of the energy, and of the work of separation of so many cells.
 const LEAST_RELEASED: f64 = 1e-3;
 const CELLS: f64 = 10.0;
-
-/// An energy over the area of a cell.
-#[derive(Clone, Copy)]
-pub(super) struct Energy {
-    pub(super) value: f64,
-    /// The sum of the magnitudes of its parts.
-    pub(super) scale: f64,
-}
 
 impl AttractedStep<'_> {
     /// The energy of a state with the free motion `motion`, from z − s, K (z − s), the gap and the work of the wall of

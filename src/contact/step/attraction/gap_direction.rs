@@ -1,7 +1,7 @@
 //! Gradient, direction and length of an iteration in the gap.
 
 use super::balance::Operators;
-use super::descent::{Along, Descent, NextDirection};
+use super::descent::{Along, Descent, Gradient, NextDirection};
 use super::passes::InGap;
 use super::softest::{Convex, softest};
 use crate::adhesion::Attraction;
@@ -28,18 +28,6 @@ const LEAST_FOLD: f64 = 1e-9;
 const SPAN: f64 = 0.03;
 /// Curvature is measured by a change of the gap by this part of the range.
 const DIFFERENCE: f64 = 1e-4;
-
-/// The gradient of E on the cells that may move.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Gradient {
-    /// λ.
-    pub(super) multiplier: f64,
-    /// The greatest |r|, over the greatest traction.
-    pub(super) greatest: f64,
-    /// Σ s, and the number of cells at the wall.
-    pub(super) attraction: f64,
-    pub(super) at_wall: f64,
-}
 
 /// s of a gap.
 fn pulls(law: &dyn Attraction, h: f64) -> f64 {
