@@ -107,7 +107,7 @@ fn running_edge(seed: u64) -> String {
     let cells = 128 + 32 * (seed % 3) as usize;
     let grid = Grid::new([cells, 1], [3.0, 1.0]).unwrap();
     let layer = Layer::bonded_to_rigid(0.15 + 0.05 * (seed % 2) as f64, 0.0).unwrap();
-    let kernel = if seed % 2 == 0 {
+    let kernel = if seed.is_multiple_of(2) {
         InfluenceKernel::layer_periodic(&grid, layer)
     } else {
         InfluenceKernel::layer_line(&grid, layer, None)
