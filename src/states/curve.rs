@@ -318,9 +318,13 @@ impl ElasticStates {
         match self.between(level) {
             Some((k, s)) => {
                 let [a, b] = [k, k + 1].map(|k| of(&self.states[k]));
-                if a == b { a } else { a * (b / a).powf(s) }
+                // full contact, whose stiffness is infinite
+                if a == b || a == f64::INFINITY { a } else { a * (b / a).powf(s) }
             }
-            None => of(&self.states[0]) * (of_radius * (1.0 - first.slope).max(0.0) * (level - first.level)).exp(),
+            None => {
+                let (least, power) = (of(&self.states[0]), of_radius * (1.0 - first.slope).max(0.0));
+                if least == f64::INFINITY { least } else { least * (power * (level - first.level)).exp() }
+            }
         }
     }
 
