@@ -123,7 +123,9 @@ impl Fields<'_> {
             return Ok(whole);
         }
         let Punches { fields, matrix } = self.punches(load_point, GRADIENT_TOLERANCE)?;
-        let parts = solve_normal_equations(&matrix, [1.0, 0.0, 0.0], DEPENDENT).map(|part| part * region.cell_area());
+        // of one cell, where the region's own stand for their mirror images as well
+        let cell_area: f64 = self.grid().spacing().iter().product();
+        let parts = solve_normal_equations(&matrix, [1.0, 0.0, 0.0], DEPENDENT).map(|part| part * cell_area);
         let mut sum = vec![0.0; region.len()];
         for (part, punch) in parts.into_iter().zip(&fields) {
             sum.iter_mut().zip(punch).for_each(|(sum, q)| *sum += part * q);

@@ -22,7 +22,7 @@ impl StatesContact {
     /// use viscocontact::states::{Reach, StatesContact, Sweep};
     ///
     /// let rubber = Material::incompressible(Zener::with_time(1.0e6, 1.0e6, 1.0)?);
-    /// let states = Sweep::new(Grid::square(32, 3.0e-3)?, &Sphere::new(10.0e-3)?).run(Reach::Level(6.0e-7))?;
+    /// let states = Sweep::new(Grid::square(32, 4.0e-3)?, &Sphere::new(10.0e-3)?).run(Reach::Level(6.0e-7))?;
     /// let mut contact = StatesContact::new(&states, &rubber)?;
     /// for (dt, force) in [(0.0, 0.5), (1.0, 0.5), (1.0, 0.1)] {
     ///     contact.step(dt, Load::force(force))?;
