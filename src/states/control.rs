@@ -196,7 +196,7 @@ impl Judge<StatesContact> for OnLevels {
             see([0, 1].map(|k| ended[0][k] - ended[1][k]), scales);
         }
         if let (Some(off), Some(shear)) = (whole.levels.shear_distance(&halves.levels), &halves.levels.shear) {
-            let [far, most] = shear.greatest;
+            let [far, most] = shear.maxima;
             see([off[0], off[1]], [shear.displacement().abs().max(SMALL * far), shear.force.abs().max(SMALL * most)]);
             see([off[2], 0.0], [shear.lost.max(SMALL * far * most), 0.0]);
         }

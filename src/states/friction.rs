@@ -75,12 +75,13 @@ impl StatesContact {
 
     /// [`StatesContact::with_friction`] of any constant Poisson's ratio, as an estimate: as if tangential kernels were
     /// (2 − ν)/(2(1 − ν)) times the normal ones, which is exact in the mean of a circle, and neither load moved the
-    /// surface along the other. At ν = ½ the displacement of a ball errs by 0.2 % at Q = 0.5 f P and by 0.4 % at
+    /// surface along the other. At ν = ½ the displacement of a ball is off by 0.2 % at Q = 0.5 f P and by 0.4 % at
     /// 0.9 f P; that of a rough surface by 1.7 % in the median of 12, at most 8 %.
     ///
     /// # Errors
     /// If the coefficient is not above 0, or more than 10⁶; [`StatesError::OtherKernel`] of layers and other kernels than
-    /// those of half-spaces, and of bodies whose Poisson's ratio changes with time.
+    /// those of half-spaces, and of bodies whose Poisson's ratio changes with time. States of a table or a file, which
+    /// do not tell their kernel, are taken for those of half-spaces.
     pub fn with_estimated_friction(self, coefficient: f64) -> Result<StatesContact> {
         let (material, is_line) = (&self.scene.material, self.is_line()?);
         let mut sums = [0.0; 2];
@@ -117,8 +118,12 @@ impl StatesContact {
         Ok(self)
     }
 
-    /// Whether the load is uniform along one axis.
+    /// Whether the load is uniform along one axis. Layers respond in another way; states without a scene, of closed
+    /// forms, tables and files, are those of half-spaces.
     fn is_line(&self) -> Result<bool> {
+        if self.states.poisson.is_some() {
+            return Err(StatesError::OtherKernel.into());
+        }
         let Some(scene) = self.states.scene.as_ref() else { return Ok(false) };
         match scene.half_space_below() {
             Some(body) => Ok(matches!(body, HalfSpace::Line { .. })),

@@ -158,6 +158,26 @@ fn what_friction_does_not_cover_is_refused() {
     assert_eq!(refused(on_layer.with_estimated_friction(0.5)), StatesError::OtherKernel);
 }
 
+/// A contact that was pressed before gets friction: its groups have not been sheared.
+#[test]
+fn friction_begins_at_any_time() {
+    let states = ElasticStates::sphere(0.5625).unwrap();
+    let mut late = StatesContact::new(&states, &material(&relaxation(1))).unwrap().with_linear_steps();
+    let mut early = contact(0.4);
+    for step in 0..12 {
+        let (dt, load) = (if step == 0 { 0.0 } else { 0.3 }, Load::force(1.0 + 0.8 * (1.3 * f64::from(step)).sin()));
+        late.step(dt, load).unwrap();
+        early.step_sheared(dt, load, Load::force(0.0)).unwrap();
+    }
+    assert!(late.groups() > 3);
+    late = late.with_friction(0.4).unwrap();
+    for contact in [&mut late, &mut early] {
+        advance(contact, 0..10);
+    }
+    assert!((late.lateral_force() - early.lateral_force()).abs() < 1e-12);
+    assert!((late.lateral_work().slip / early.lateral_work().slip - 1.0).abs() < 1e-9);
+}
+
 /// Groups merge, however many cycles there are.
 #[test]
 fn cycles_keep_few_groups() {

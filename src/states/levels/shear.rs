@@ -18,7 +18,7 @@ use crate::states::levels::{Demand, GROUPS, Group, Levels, ROUNDING, Wanted};
 const ROUNDED: f64 = 64.0 * f64::EPSILON;
 
 /// Works below this \[J\] are numbers, and their sums.
-const GREATEST_WORK: f64 = 1e200;
+const MAX_WORK: f64 = 1e200;
 
 /// What happens along the surface.
 #[derive(Debug, Default)]
@@ -26,9 +26,11 @@ const GREATEST_WORK: f64 = 1e200;
 pub(in crate::states) struct Shear {
     /// Whether levels that are met slip from the start of the step on, as if they had been in contact.
     whole: bool,
-    /// U of each group if nothing shears it any more, then at the end of the step.
+    /// Of the step being tried: U of each group if nothing shears it any more, then at its end.
+    #[cfg_attr(feature = "checkpoint", serde(skip))]
     trial: Vec<f64>,
-    /// θ of each group at the end of the step.
+    /// θ of each group at its end.
+    #[cfg_attr(feature = "checkpoint", serde(skip))]
     tractions: Vec<f64>,
     /// ∫ θ dl \[N\].
     pub(in crate::states) force: f64,
@@ -39,18 +41,18 @@ pub(in crate::states) struct Shear {
     /// Level up to which the contact sticks \[m²\].
     pub(in crate::states) stick: f64,
     /// Maximum of |motion| and of |force| so far.
-    pub(in crate::states) greatest: [f64; 2],
+    pub(in crate::states) maxima: [f64; 2],
     /// Work that the body has done along the surface, and the part of it that slip has dissipated \[J\].
     pub(in crate::states) work: f64,
     pub(in crate::states) lost: f64,
 }
 
-clone_by_fields! { Shear { whole, trial, tractions, force, motion, slid, stick, greatest, work, lost } }
+clone_by_fields! { Shear { whole, trial, tractions, force, motion, slid, stick, maxima, work, lost } }
 
 impl Shear {
     #[cfg(feature = "checkpoint")]
     pub(super) fn fits(&self) -> bool {
-        let Shear { force, motion, slid, stick, greatest: [far, most], work, lost, .. } = self;
+        let Shear { force, motion, slid, stick, maxima: [far, most], work, lost, .. } = self;
         [force, motion, slid, work, lost].iter().all(|value| value.is_finite())
             && [stick, far, most].iter().all(|value| value.is_finite() && **value >= 0.0)
     }
@@ -111,6 +113,12 @@ fn widths(groups: &[Group], k: usize) -> [f64; 2] {
     [groups[k].top - bottom, groups[k].motions.depth - lower]
 }
 
+/// ∫ (δ(top) − δ) dl of a group of this width in level.
+fn inner_work(groups: &[Group], k: usize, width: f64) -> f64 {
+    let below = k.checked_sub(1).map_or(0.0, |k| groups[k].work);
+    groups[k].motions.depth * width - (groups[k].work - below)
+}
+
 impl Levels {
     /// With friction; nothing has acted along the surface yet.
     pub(in crate::states) fn with_shear(&mut self, states: &ElasticStates) {
@@ -145,9 +153,8 @@ impl Levels {
         let of = |a: &[f64]| {
             let (mut below, mut sum) = (0.0, 0.0);
             for (k, a) in a.iter().enumerate() {
-                let (bottom, [width, depth]) = (k.checked_sub(1).map(|k| self.groups[k]), widths(&self.groups, k));
-                let work = self.groups[k].work - bottom.map_or(0.0, |bottom| bottom.work);
-                sum += a * (below * depth + a * (self.groups[k].motions.depth * width - work));
+                let [width, depth] = widths(&self.groups, k);
+                sum += a * (below * depth + a * inner_work(&self.groups, k, width));
                 below += a * width;
             }
             sum
@@ -159,6 +166,8 @@ impl Levels {
     pub(super) fn predict_shear(&mut self) {
         let Levels { history, shear: Some(shear), .. } = self else { return };
         history.predict_shear(&mut shear.trial);
+        shear.tractions.clear();
+        shear.tractions.resize(shear.trial.len(), 0.0);
     }
 
     /// Whether all levels up to one that were held can stick, |θ| ≤ w, so that those that slip are the ones at the
@@ -194,7 +203,7 @@ impl Levels {
         }
         let far = shear.displacement().abs() + sum.abs() + states.depth(level.max(self.level));
         let work = far * (self.force + level.max(self.level) / compliance.max(f64::MIN_POSITIVE));
-        if work.is_nan() || work >= GREATEST_WORK {
+        if work.is_nan() || work >= MAX_WORK {
             return Err(StepError::Overflow { time, what: "the work along the surface" }.into());
         }
         let Demand::Force(force) = along else { return Ok(()) };
@@ -231,8 +240,6 @@ impl Levels {
     fn stick_and_need(&mut self, wish: Wish, stick: usize) -> f64 {
         let Levels { history, groups, shear: Some(shear), .. } = self else { return 0.0 };
         let compliance = history.rule().compliance();
-        shear.tractions.clear();
-        shear.tractions.resize(groups.len(), 0.0);
         let slid = wish.weights[1] * shear.slid;
         let (mut needed, mut size) = (wish.sum - slid, wish.sum.abs() + slid.abs());
         for (k, traction) in shear.tractions.iter_mut().enumerate() {
@@ -300,14 +307,12 @@ impl Levels {
         // of the levels above, ∫ θ dl and ∫ θ dδ, both in the mean of the step
         let mut above = [0.0; 2];
         for k in (0..groups.len()).rev() {
-            let (bottom, [width, depth]) = (k.checked_sub(1).map(|k| groups[k]), widths(groups, k));
-            let traction = shear.tractions[k];
+            let ([width, depth], traction) = (widths(groups, k), shear.tractions[k]);
             shear.trial[k] = if k < stick { now[k] } else { shear.trial[k] + compliance * traction };
             let (mean, change) = (0.5 * (groups[k].shear + traction), shear.trial[k] - now[k]);
-            let work = groups[k].work - bottom.map_or(0.0, |bottom| bottom.work);
-            let ends = groups[k].motions.depth + bottom.map_or(0.0, |bottom| bottom.motions.depth);
             // ∫ ΔU (κ(l′) − κ(l)) θ dl dl′ over l > l′ with κ = dδ/dl: what slips below a level slips there
-            lost += change * (above[0] * depth - above[1] * width + mean * (2.0 * work - ends * width));
+            let inner = depth * width - 2.0 * inner_work(groups, k, width);
+            lost += change * (above[0] * depth - above[1] * width + mean * inner);
             above = [above[0] + mean * width, above[1] + mean * depth];
             (force, motion) = (force + traction * width, motion + shear.trial[k] * depth);
             groups[k].shear = traction;
@@ -321,7 +326,7 @@ impl Levels {
         let mean = 0.5 * (before[0] + force);
         shear.work += mean * (shear.displacement() - before[1]);
         shear.lost += lost + if let Demand::Force(_) = along { 0.0 } else { mean * left };
-        shear.greatest = [shear.greatest[0].max(shear.displacement().abs()), shear.greatest[1].max(force.abs())];
+        shear.maxima = [shear.maxima[0].max(shear.displacement().abs()), shear.maxima[1].max(force.abs())];
         let stick = if share.abs() < 1.0 && stick == met.start { met.end } else { stick };
         shear.stick = stick.checked_sub(1).map_or(0.0, |k| groups[k].top);
     }
