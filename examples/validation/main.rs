@@ -1,5 +1,5 @@
 //! Every claim against its reference: closed forms, the method of dimensionality reduction, formulations of another kind. Computes
-//! all of them, and writes their table and pictures, which docs/validation.md shows; fails if one errs by more than it may.
+//! all of them, and writes their table and pictures, which docs/maintainers/claims.md shows; fails if an error is greater than allowed.
 //!
 //! `cargo run --release -p viscocontact --features full --example validation`
 
@@ -160,7 +160,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     print!("{table}");
     errors(&claims).save(args.output.join("validation_errors.png"))?;
     save_rows(&checked, &args.output)?;
-    fs::write(args.output.join("validation.md"), &table)?;
+    fs::write(args.output.join("claims.md"), &table)?;
     support::figures::figure("claims", &table)?;
     let failed: Vec<String> = claims
         .iter()

@@ -100,7 +100,7 @@ impl OpeningEdge {
 
     /// The same with z in place of π/4, for laws other than Dugdale's: about 1.4 for
     /// [`ExponentialAttraction`](crate::adhesion::ExponentialAttraction), fitted to pull-off forces that this crate computes
-    /// (docs/validation.md).
+    /// (docs/maintainers/claims.md).
     ///
     /// # Errors
     /// If z is not within \[0.01, 100\].
