@@ -18,7 +18,7 @@ fn held(material: &Material, force: f64, t: f64) -> f64 {
     (0.75 * RADIUS * force * material.contact_compliance(t)).powf(2.0 / 3.0) / RADIUS
 }
 
-/// Eight steps of Δ after a jump, Δ/τ from 1e-12 to 1e12, both rules: the table of docs/accuracy.md.
+/// Eight steps of Δ after a jump, Δ/τ from 1e-12 to 1e12, both rules: the table of docs/maintainers/measurements.md.
 #[test]
 fn every_length_of_step_errs_by_no_more_than_its_rule() {
     let mut table = "| Δ/τ | exponential | exponential, linear |\n|---|---|---|".to_owned();

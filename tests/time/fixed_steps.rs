@@ -22,7 +22,7 @@ fn run(material: &Material, load: &dyn LoadHistory, dt: f64, parts: u32) -> (Vec
     (answer, run.error_budget().time.expect("steps were taken"))
 }
 
-/// Loads, and their rows in docs/accuracy.md.
+/// Loads, and their rows in docs/maintainers/measurements.md.
 const RATIOS: [(&str, &str); 4] = [
     ("force held", "force held after a jump (of Maxwell: exact)"),
     ("force ramp", "force that grows linearly"),
