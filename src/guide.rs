@@ -7,7 +7,7 @@
 //! | [`data`] | units, moduli in tension, tables of DMA |
 //! | [`accuracy`] | mesh, steps, tolerance: what to choose, and how to check it |
 //! | [`own_models`] | your own rheology, shape and load |
-//! | [`adhesion`] | surfaces that stick: law, range, resolution, loads that pull |
+//! | [`adhesion`] | adhesion: law, range, resolution, pull-off and jumps |
 //! | [`elastic_states`] | a surface solved once, for many materials and histories: when to take which |
 //! | [`friction`] | partial slip, shear and fretting of creeping bodies on elastic states |
 //! | [`steady_motion`] | sliding and rolling that do not change: when to step, and when to solve for the state |
