@@ -1,5 +1,6 @@
 //! Every claim against its reference: closed forms, the method of dimensionality reduction, formulations of another kind. Computes
-//! all of them, and writes their table and pictures, which docs/maintainers/claims.md shows; fails if an error is greater than allowed.
+//! all of them, and writes their table and pictures, which docs/maintainers/claims.md shows; fails if an error is greater than
+//! allowed.
 //!
 //! `cargo run --release -p viscocontact --features full --example validation`
 
