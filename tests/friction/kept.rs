@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use viscocontact::ErrorKind;
 use viscocontact::contact::CheckpointError;
 use viscocontact::output::{CsvHistory, Earlier, Metadata};
 use viscocontact::prelude::*;
