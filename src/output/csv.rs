@@ -59,8 +59,8 @@ fn known(value: Option<f64>) -> String {
 /// separated by commas: `time [s]`, `step length [s]`, `force [N]`, `approach [m]`, `tilt 1 [rad]`, `tilt 2 [rad]`,
 /// `moment 1 [N m]`, `moment 2 [N m]`, `contact area [m2]`, `contact cells`, `mean pressure [Pa]`, `max pressure
 /// [Pa]`, cost and accuracy of the step as in [`StepReport`] (`time error` is empty where nothing was estimated), and
-/// additional columns of your choice. A [`Contact`] is one in space, on elastic states, or your own; without fields,
-/// moments and greatest pressure are empty. Where [ranks](crate::parallel) share out the contact, all of them make
+/// the columns of the contact ([`Contact::columns`]) and additional ones of your choice. A [`Contact`] is one in space,
+/// on elastic states, or your own; without fields, moments and maximum pressure are empty. Where [ranks](crate::parallel) share out the contact, all of them make
 /// and write the history, and rank 0 has the file.
 /// [`Run::samples`](crate::run::Run::samples) has rows between the ends of steps: pass the contact and the report of each sample.
 /// Numbers have enough digits to be read back bitwise. In Python: `pandas.read_csv(path, comment="#")`.
@@ -86,6 +86,7 @@ pub struct CsvHistory {
     path: PathBuf,
     /// None on ranks other than 0.
     file: Option<Appending<File>>,
+    own: Vec<&'static str>,
     additional: usize,
 }
 
@@ -106,7 +107,8 @@ impl CsvHistory {
     ) -> Result<CsvHistory> {
         let path = path.as_ref();
         let unusable = |error| failed(path, error);
-        let names = columns(contact).map(|(name, _)| name);
+        let own: Vec<&str> = contact.columns().into_iter().map(|(name, _)| name).collect();
+        let names = [&columns(contact).map(|(name, _)| name)[..], &own].concat();
         agreed(contact, check_names(&names, additional).map_err(unusable))?;
         let names: Vec<String> = names.iter().chain(additional).map(|name| quoted(name)).collect();
         let names = names.join(",");
@@ -130,20 +132,25 @@ impl CsvHistory {
             Some(fields) => fields.by_one_rank(create)?,
             None => Some(create()?),
         };
-        Ok(CsvHistory { path: path.to_owned(), file, additional: additional.len() })
+        Ok(CsvHistory { path: path.to_owned(), file, own, additional: additional.len() })
     }
 
     /// Appends the row of the last step, with the values of the additional columns. NaN is written as `NaN`.
     ///
     /// # Errors
-    /// If there is not one value for each additional column, or the file cannot be written. Then nothing of the row is
-    /// in the file, and writing can be repeated once there is space again.
+    /// If there is not one value for each additional column, the contact has other columns than it had, or the file
+    /// cannot be written. Then nothing of the row is in the file, and writing can be repeated once there is space again.
     pub fn record(&mut self, contact: &impl Contact, report: &StepReport, additional: &[f64]) -> Result<()> {
         agreed(contact, exact_length("additional columns", additional.len(), self.additional))?;
-        let own = columns(contact).map(|(_, cell)| cell(contact, report));
-        let cells: Vec<String> = own.into_iter().chain(additional.iter().copied().map(number)).collect();
+        let CsvHistory { path, file, own, .. } = self;
+        let (names, values): (Vec<_>, Vec<_>) = contact.columns().into_iter().unzip();
+        if names != *own {
+            let reason = format!("the contact has the columns {names:?}, not {own:?} as when the file was made");
+            return agreed(contact, Err(failed(path, io::Error::new(io::ErrorKind::InvalidInput, reason))));
+        }
+        let cells = columns(contact).map(|(_, cell)| cell(contact, report)).into_iter();
+        let cells: Vec<String> = cells.chain(values.iter().chain(additional).copied().map(number)).collect();
         let row = cells.join(",") + "\n";
-        let CsvHistory { path, file, .. } = self;
         let appended = file.as_mut().map_or(Ok(()), |file| file.append(row.as_bytes()));
         agreed(contact, appended.map_err(|error| failed(path, error)))
     }

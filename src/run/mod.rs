@@ -234,6 +234,13 @@ pub trait Contact: Clone + Debug + Send + Sync + 'static {
         }
     }
 
+    /// Columns of its own, names with units and values, which tables of its history have after the standard ones
+    /// ([`CsvHistory`](crate::output::CsvHistory)); of states with friction what acts along the surface. Which ones
+    /// they are must not change.
+    fn columns(&self) -> Vec<(&'static str, f64)> {
+        Vec::new()
+    }
+
     /// Follows a load history to the time `until` \[s\], in steps chosen by `stepping`.
     fn follow<'a>(&'a mut self, history: &'a dyn LoadHistory, stepping: Stepping, until: f64) -> Run<'a, Self> {
         Run::new(OwnedOrBorrowed::Borrowed(self), OwnedOrBorrowed::Borrowed(history), stepping, until)

@@ -35,9 +35,8 @@ pub struct LateralWork {
 /// contacts that shrink and meet again (docs/guide/friction.md has the proof and where it was tested).
 ///
 /// The levels that a step meets were sheared and pressed together: a step in which P and Q rise together is oblique
-/// loading, all of which sticks if Q < f P. Steps are linear in time, of second order: slip begins and ends in kinks.
-/// To press first and then to shear (Cattaneo's case) takes two steps, of no
-/// time if it happens at once.
+/// loading, all of which sticks if Q < f P. Steps are linear in time, of second order: slip begins and ends in kinks. To press first
+/// and then to shear (Cattaneo's case) takes two steps, of no time if it happens at once.
 impl StatesContact {
     /// With a coefficient of friction, where bodies respond alike to normal and to tangential loads: in line contact,
     /// and of bodies of ν = 0. Neither load may move the surface along the other: ν = ½ on a rigid body, or two bodies
@@ -212,6 +211,21 @@ impl StatesContact {
             LateralWork { work, slip, stored, creep: work - slip - stored }
         });
         found.unwrap_or_default()
+    }
+
+    /// What tables of a history have besides, with friction.
+    pub(super) fn columns_along(&self) -> Vec<(&'static str, f64)> {
+        if self.scene.friction.is_none() {
+            return Vec::new();
+        }
+        vec![
+            ("force along [N]", self.lateral_force()),
+            ("displacement along [m]", self.lateral_displacement()),
+            ("slid [m]", self.slid()),
+            ("stick area [m2]", self.stick_area()),
+            ("work along [J]", self.lateral_work().work),
+            ("loss by slip [J]", self.lateral_work().slip),
+        ]
     }
 
     /// The traction along the surface as a sum of elastic pressures: level l_i at the top of each group that carries

@@ -69,6 +69,10 @@ impl Contact for StatesContact {
         StatesContact::report(self, dt, load)
     }
 
+    fn columns(&self) -> Vec<(&'static str, f64)> {
+        self.columns_along()
+    }
+
     fn temperature(&self) -> Option<&TemperatureHistory> {
         self.scene.temperature.as_ref()
     }

@@ -3,7 +3,9 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use viscocontact::ErrorKind;
 use viscocontact::contact::CheckpointError;
+use viscocontact::output::{CsvHistory, Earlier, Metadata};
 use viscocontact::prelude::*;
 use viscocontact::states::{ElasticStates, Reach, StatesContact, StatesError, Sweep};
 
@@ -191,4 +193,37 @@ fn cycles_keep_few_groups() {
     }
     println!("at most {most} groups");
     assert!(most < 2000);
+}
+
+/// A table of its history has what acts along the surface.
+#[test]
+fn tables_have_what_acts_along_the_surface() {
+    let folder = Temporary::folder("friction-table");
+    let (path, mut contact) = (folder.join("history.csv"), contact(0.4));
+    let mut table =
+        CsvHistory::create(&path, &Metadata::new("rubbed"), &contact, &["twice [N]"], Earlier::Refuse).unwrap();
+    for _ in 0..3 {
+        let report = contact.step_sheared(0.1, Load::force(1.0), Load::force(0.3)).unwrap();
+        table.record(&contact, &report, &[2.0 * report.force]).unwrap();
+    }
+    let smooth = StatesContact::new(contact.states(), &material(&relaxation(1))).unwrap();
+    let report = smooth.report(0.0, Load::force(0.0));
+    assert_eq!(table.record(&smooth, &report, &[0.0]).unwrap_err().kind(), ErrorKind::File);
+    let text = std::fs::read_to_string(path).unwrap();
+    let rows: Vec<Vec<&str>> = text.lines().skip(1).map(|line| line.split(',').collect()).collect();
+    assert_eq!(rows.len(), 4);
+    let column = |name: &str| rows[0].iter().position(|heading| *heading == name).unwrap();
+    let value = |row: usize, name: &str| rows[row][column(name)].parse::<f64>().unwrap();
+    let work = contact.lateral_work();
+    let along = [
+        ("force along [N]", contact.lateral_force()),
+        ("displacement along [m]", contact.lateral_displacement()),
+        ("slid [m]", 0.0),
+        ("stick area [m2]", contact.stick_area()),
+        ("work along [J]", work.work),
+        ("loss by slip [J]", work.slip),
+        ("twice [N]", 2.0 * contact.force()),
+    ];
+    assert!(along.iter().all(|(name, expected)| value(3, name) == *expected));
+    assert!(value(1, "displacement along [m]") < value(3, "displacement along [m]"));
 }
