@@ -115,6 +115,7 @@
 //! | `analytic` | [`analytic`] |
 //! | `checkpoint` | save and resume: [`ViscoelasticContact::save`], [`run::Run::autosave_to`] |
 //! | `data` | [`rheology::Measurements`], [`rheology::MasterCurve`], [`numeric::least_squares`] |
+//! | `friction` | [`friction`]: partial slip, shear and torsion in space |
 //! | `laws` | [`laws`]: laws for shapes, rheologies and histories, `proptest` strategies |
 //! | `output` | [`output`]: CSV, VTK |
 //! | `plot` | [`plot`]: PNG, SVG and GIF |
@@ -158,6 +159,8 @@ mod extent;
 mod fft;
 pub mod fields;
 mod file;
+#[cfg(feature = "friction")]
+pub mod friction;
 pub mod geometry;
 mod grid;
 // the programs of the guide run only with the features that they use

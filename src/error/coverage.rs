@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use Special::{Attraction, FixedToBodies, FixedToIndenter, OwnContact, Ranks, SteadyMotion};
+use Special::{Attraction, FixedToBodies, FixedToIndenter, Friction, OwnContact, Ranks, SteadyMotion};
 
 use super::{Error, Result};
 
@@ -20,6 +20,8 @@ pub enum Special {
     FixedToBodies,
     /// The grid is fixed to the indenter ([`Frame::Indenter`](crate::contact::Frame::Indenter)).
     FixedToIndenter,
+    /// Bodies rub (`friction`).
+    Friction,
     /// The contact is of a user's own type ([`Contact`](crate::run::Contact)).
     OwnContact,
 }
@@ -32,6 +34,7 @@ impl fmt::Display for Special {
             Ranks => "on rows that ranks share out",
             FixedToBodies => "on a grid that is fixed to the bodies",
             FixedToIndenter => "on a grid that is fixed to the indenter",
+            Friction => "where bodies rub",
             OwnContact => "of a contact of your own",
         })
     }
@@ -55,12 +58,14 @@ macro_rules! not_covered {
 not_covered! {
     // parts of a scene
     SEVERAL_BODIES: "a contact of several rigid bodies",
-        Ranks: ONE_PROCESS, Attraction: "compute one body", SteadyMotion: "take one";
-    FRAME_OF_INDENTER: "Frame::Indenter", Ranks: ONE_PROCESS, Attraction: "take Frame::Bodies";
+        Ranks: ONE_PROCESS, Attraction: "compute one body", SteadyMotion: "take one", Friction: "take one";
+    FRAME_OF_INDENTER: "Frame::Indenter", Ranks: ONE_PROCESS, Attraction: "take Frame::Bodies", Friction: "take Frame::Bodies";
     SHARED_ROWS: "a contact that ranks share out",
-        Attraction: "compute it in one process", SteadyMotion: "compute it in one process";
+        Attraction: "compute it in one process", SteadyMotion: "compute it in one process",
+        Friction: ONE_PROCESS;
     FOUND_DOMAIN: "a study that finds its domain", Attraction: "give its sides (Study::domain), wide enough for the attraction to end";
-    ATTRACTED: "a contact of surfaces that attract each other", SteadyMotion: "build it without attraction";
+    ATTRACTED: "a contact of surfaces that attract each other",
+        SteadyMotion: "build it without attraction", Friction: "build it without attraction";
     TEMPERATURES: "a history of the temperature",
         SteadyMotion: "multiply the velocity by the shift factor of the temperature";
     OTHER_ROWS: "a geometry that was given for other ranks", Ranks: ONE_PROCESS;

@@ -53,6 +53,10 @@ impl Error {
             | Error::States(StatesError::OutOfOrder { .. })
             | Error::Step(StepError::NotConverged { .. } | StepError::StepTooShort { .. }) => ErrorKind::Convergence,
             Error::States(StatesError::Beyond { .. } | StatesError::Below { .. }) => ErrorKind::Value,
+            #[cfg(feature = "friction")]
+            Error::Friction(crate::error::FrictionError::NotConverged { .. }) => ErrorKind::Convergence,
+            #[cfg(feature = "friction")]
+            Error::Friction(_) => ErrorKind::Unsupported,
             Error::NotCovered { .. }
             | Error::Sliding(SlidingError::ThinLayer { .. })
             | Error::Kernel(KernelError::NoStress { .. })

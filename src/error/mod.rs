@@ -8,6 +8,8 @@ mod convergence;
 pub(crate) mod coverage;
 mod debug;
 mod file;
+#[cfg(feature = "friction")]
+mod friction;
 mod kernel;
 mod kind;
 mod load;
@@ -33,6 +35,8 @@ pub(crate) use checks::{
 pub use convergence::{Convergence, Trend};
 pub use coverage::Special;
 pub use file::FileError;
+#[cfg(feature = "friction")]
+pub use friction::FrictionError;
 pub use kernel::KernelError;
 pub use kind::ErrorKind;
 pub use load::LoadError;
@@ -184,6 +188,11 @@ pub enum Error {
     /// An influence kernel is not allowed.
     #[error(transparent)]
     Kernel(#[from] KernelError),
+
+    /// Friction in space is not covered, or was not found.
+    #[cfg(feature = "friction")]
+    #[error(transparent)]
+    Friction(#[from] FrictionError),
 
     /// A steady motion was not found, or there is none.
     #[error(transparent)]

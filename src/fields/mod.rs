@@ -295,7 +295,7 @@ impl<'a> Fields<'a> {
     pub(crate) fn covers(&self, case: coverage::Case) -> Result<()> {
         case.refuse_if(|special| match special {
             Special::Attraction => self.ground.attraction.is_some(),
-            Special::SteadyMotion | Special::OwnContact => false,
+            Special::SteadyMotion | Special::Friction | Special::OwnContact => false,
             Special::Ranks => self.held.region.is_shared(),
             Special::FixedToBodies => self.ground.settings.frame == Frame::Bodies,
             Special::FixedToIndenter => self.ground.settings.frame == Frame::Indenter,

@@ -234,6 +234,13 @@ impl GroupHistory {
         self.rule.influences().map(|(modulus, _)| modulus).zip(stresses.map(Vec::as_slice))
     }
 
+    /// As many groups as `count`, each of which has the past of an old one or none.
+    pub(crate) fn rearrange(&mut self, count: usize, old: impl Fn(usize) -> Option<usize>) {
+        self.columns().for_each(|column| {
+            *column = (0..count).map(|k| old(k).map_or(0.0, |k| column[k])).collect();
+        });
+    }
+
     /// Adds an undisturbed group after the others.
     pub(crate) fn push(&mut self) {
         self.columns().for_each(|column| column.push(0.0));

@@ -268,7 +268,7 @@ impl InfluenceKernel {
 
     /// The coefficient \[m\] of the cell `at` cells away along each axis of the grid: along periodic axes the mean of
     /// the waves.
-    pub(super) fn coefficient_at(&self, at: [usize; 2]) -> f64 {
+    pub(crate) fn coefficient_at(&self, at: [usize; 2]) -> f64 {
         let periods = [0, 1].map(|axis| if self.periodic[axis] { self.grid.cells()[axis] } else { 1 });
         let terms = |axis: usize| if self.periodic[axis] { 0..=periods[axis] / 2 } else { at[axis]..=at[axis] };
         let weight =

@@ -45,6 +45,15 @@ impl RigidMotion {
     }
 }
 
+impl std::ops::Sub for RigidMotion {
+    type Output = RigidMotion;
+
+    fn sub(self, other: RigidMotion) -> RigidMotion {
+        let tilt = [0, 1].map(|axis| self.tilt[axis] - other.tilt[axis]);
+        RigidMotion { approach: self.approach - other.approach, tilt }
+    }
+}
+
 impl std::ops::Add for RigidMotion {
     type Output = RigidMotion;
 

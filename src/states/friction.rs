@@ -249,11 +249,4 @@ impl Material {
     fn each(&self) -> impl Iterator<Item = Material> {
         self.apart().into_iter().filter(|body| body.poisson_ratios().next().is_some())
     }
-
-    /// Whether it is two bodies of one material.
-    fn is_pair(&self) -> Result<bool> {
-        let [one, other] = self.apart();
-        let is_alike = one.poisson_ratios().eq(other.poisson_ratios());
-        Ok(is_alike && one.contact_spectrum()? == other.contact_spectrum()?)
-    }
 }

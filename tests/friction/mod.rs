@@ -5,4 +5,5 @@ mod dense;
 mod gradients;
 mod kept;
 mod runs;
+mod space;
 mod steps;

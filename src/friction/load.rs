@@ -1,0 +1,58 @@
+//! What acts along the surface.
+
+use crate::error::{Result, finite};
+
+/// One component of what acts along the surface: the shift along x1 or x2, or the twist about the origin.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Component {
+    /// A force \[N\], or a torque \[N m\].
+    Force(f64),
+    /// A displacement of the body \[m\], or an angle \[rad\], since the contact was made.
+    Motion(f64),
+}
+
+/// What acts on the body along the surface at the end of a step: a force or a displacement along each axis, a torque
+/// or an angle about the normal through the origin, in any mixture. Positive along the axes, angles from x1 to x2.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ShearLoad {
+    /// Along x1, along x2, and the twist.
+    pub components: [Component; 3],
+}
+
+impl ShearLoad {
+    /// A force \[N\], on a body that does not turn.
+    pub fn force(force: [f64; 2]) -> ShearLoad {
+        ShearLoad { components: [Component::Force(force[0]), Component::Force(force[1]), Component::Motion(0.0)] }
+    }
+
+    /// A displacement \[m\], of a body that does not turn.
+    pub fn motion(shift: [f64; 2]) -> ShearLoad {
+        ShearLoad { components: [shift[0], shift[1], 0.0].map(Component::Motion) }
+    }
+
+    /// The same, with a torque \[N m\] on a body that is free to turn.
+    pub fn with_torque(mut self, torque: f64) -> ShearLoad {
+        self.components[2] = Component::Force(torque);
+        self
+    }
+
+    /// The same, with this angle \[rad\].
+    pub fn with_angle(mut self, angle: f64) -> ShearLoad {
+        self.components[2] = Component::Motion(angle);
+        self
+    }
+
+    pub(super) fn validate(&self) -> Result<()> {
+        for (component, [force, motion]) in self.components.iter().zip([
+            ["force along x1", "displacement along x1"],
+            ["force along x2", "displacement along x2"],
+            ["torque", "angle"],
+        ]) {
+            match *component {
+                Component::Force(value) => finite(force, value)?,
+                Component::Motion(value) => finite(motion, value)?,
+            };
+        }
+        Ok(())
+    }
+}
