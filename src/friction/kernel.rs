@@ -15,7 +15,7 @@ use std::f64::consts::PI;
 use num_complex::Complex64;
 
 use crate::Grid;
-use crate::error::{Result, StatesError};
+use crate::error::{FrictionError, Result};
 use crate::fft::RealPlane;
 use crate::kernel::{HalfSpace, InfluenceKernel, fast_length, wave_number};
 use crate::quadrature::GaussLegendre;
@@ -37,7 +37,7 @@ impl TangentialResponse {
     /// Of the body of a normal kernel, of this Poisson's ratio; a load that is periodic along one axis of several
     /// cells, layers and other kernels have none here.
     pub(super) fn new(normal: &InfluenceKernel, poisson: f64) -> Result<TangentialResponse> {
-        let body = normal.half_space_below().ok_or(StatesError::OtherKernel)?;
+        let body = normal.half_space_below().ok_or(FrictionError::OtherBodies)?;
         let rule = GaussLegendre::new(6);
         Ok(TangentialResponse { grid: normal.grid().clone(), body, poisson, normal: normal.clone(), rule })
     }

@@ -13,8 +13,10 @@ mod contact;
 mod kernel;
 mod limit;
 mod load;
+mod newton;
 mod problem;
 mod region;
+mod secant;
 mod sliding_limit;
 
 pub use contact::{FrictionContact, FrictionReport, Outcome};

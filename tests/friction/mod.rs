@@ -6,4 +6,5 @@ mod gradients;
 mod kept;
 mod runs;
 mod space;
+mod space_known;
 mod steps;

@@ -1,0 +1,362 @@
+//! Newton's method for the problem of a step.
+
+use crate::friction::kernel::TangentialKernel;
+use crate::friction::problem::{Cell, Problem, Solution, dot};
+use crate::friction::secant::Secant;
+use crate::linalg;
+
+/// Buffers of the solver.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Work {
+    stress: Vec<f64>,
+    normals: Vec<[f64; 2]>,
+    /// max(−g·n, 0)/r where cells slip: the curvature of the circle.
+    curvature: Vec<f64>,
+    step: Vec<f64>,
+    residual: Vec<f64>,
+    preconditioned: Vec<f64>,
+    direction: Vec<f64>,
+    image: Vec<f64>,
+    /// Free parts of the modes, and what M makes of them.
+    modes: [Vec<f64>; 3],
+    answers: [Vec<f64>; 3],
+    /// Of the multipliers, in the Newton step found last, and which cells began to slip in it.
+    change: [f64; 3],
+    began: Vec<bool>,
+    /// Whether other cells slip than at the start of that step.
+    changed: bool,
+    secant: Option<Secant>,
+}
+
+impl Work {
+    pub(super) fn resize(&mut self, n: usize) {
+        let Work {
+            stress, normals, curvature, step, residual, preconditioned, direction, image, modes, answers, ..
+        } = self;
+        normals.resize(n, [0.0; 2]);
+        self.began.resize(n, false);
+        curvature.resize(n, 0.0);
+        let fields = [stress, step, residual, preconditioned, direction, image].into_iter().chain(modes).chain(answers);
+        fields.for_each(|field| field.resize(2 * n, 0.0));
+    }
+}
+
+/// How a solve went.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Outcome {
+    pub(super) iterations: usize,
+    /// Max of the residuals of stick and slip over the largest displacement.
+    pub(super) residual: f64,
+    pub(super) is_solved: bool,
+}
+
+/// Newton steps before a solve is given up.
+const MOST_STEPS: usize = 40;
+/// From so many Newton steps on every fourth is a step of each cell alone.
+const PATIENCE: usize = 10;
+/// Part of the residual that conjugate gradients leave in a Newton step.
+const FORCING: f64 = 0.1;
+/// Conjugate gradients in a Newton step.
+const MOST_GRADIENTS: usize = 150;
+/// Displacements below this part of what friction could cause are not resolved further.
+const NEGLIGIBLE: f64 = 1e-3;
+/// Loads that grow do not grow by smaller parts.
+const LEAST_PART: f64 = 0.02;
+/// What is left of a residual by rounding, in its square.
+const NOTHING: f64 = 1e-24;
+/// Part of the tolerance beyond which a cell that would slip backwards sticks.
+const BACKWARDS: f64 = 1e-2;
+
+impl Solution {
+    /// Solves the problem from what is there; if that fails without traction, and then with loads that grow.
+    pub(super) fn find(
+        &mut self,
+        problem: &Problem<'_>,
+        kernel: &mut TangentialKernel,
+        tolerance: f64,
+        work: &mut Work,
+    ) -> Outcome {
+        self.begin(problem);
+        let mut found = self.solve(problem, kernel, tolerance, work);
+        let mut iterations = found.iterations;
+        if !found.is_solved {
+            self.begin_cold(problem);
+            found = self.solve(problem, kernel, tolerance, work);
+            iterations += found.iterations;
+        }
+        let (mut carried, mut part, mut last) = (0.0, 0.5, None);
+        while !found.is_solved && part > LEAST_PART {
+            let share = f64::min(carried + part, 1.0);
+            match &last {
+                Some(last) => self.clone_from(last),
+                None => self.begin_cold(problem),
+            }
+            let wanted = problem.wanted.map(|wanted| wanted.map(|wanted| share * wanted));
+            let tried = self.solve(&Problem { wanted, ..*problem }, kernel, tolerance, work);
+            iterations += tried.iterations;
+            if tried.is_solved {
+                (carried, part, last) = (share, 2.0 * part, Some(self.clone()));
+            } else {
+                part *= 0.5;
+            }
+            found = Outcome { is_solved: tried.is_solved && share == 1.0, ..tried };
+        }
+        Outcome { iterations, ..found }
+    }
+
+    /// Newton's method in the sets of cells that stick and slip, by conjugate gradients in the null space of the
+    /// loads.
+    fn solve(
+        &mut self,
+        problem: &Problem<'_>,
+        kernel: &mut TangentialKernel,
+        tolerance: f64,
+        work: &mut Work,
+    ) -> Outcome {
+        let n = problem.cells();
+        let drift =
+            problem.touching().map(|i| problem.drift[i].abs().max(problem.drift[n + i].abs())).fold(0.0, f64::max);
+        // what friction could displace
+        let (largest, count) =
+            problem.touching().fold((0.0_f64, 0), |(r, count), i| (r.max(problem.bound[i]), count + 1));
+        let least = NEGLIGIBLE * problem.compliance * largest * problem.side * f64::from(count).sqrt();
+        let mut outcome = Outcome::default();
+        work.secant = None;
+        let forces = problem.wanted.map(|wanted| wanted.unwrap_or(0.0).abs());
+        for iteration in 0..=MOST_STEPS {
+            kernel.apply(&self.traction, &mut work.stress);
+            if iteration == 0 {
+                self.motion = problem.fitting_motion(self, &work.stress);
+            }
+            problem.gradient(&work.stress, self.motion, &mut self.gradient);
+            let stress = problem.touching().map(|i| work.stress[i].abs().max(work.stress[n + i].abs()));
+            let scale = (problem.compliance * stress.fold(0.0, f64::max)).max(drift).max(least).max(f64::MIN_POSITIVE);
+            let gaps =
+                [0, 1, 2].map(|k| problem.wanted[k].map_or(0.0, |wanted| wanted - problem.carried(k, &self.traction)));
+            // forces against what friction can carry, torques against its part of them
+            let balance =
+                problem.driven().map(|k| gaps[k].abs() / (forces[k] + 1e-3 * problem.reach(k))).fold(0.0, f64::max);
+            let residual = self.judge(problem, work) / scale;
+            outcome =
+                Outcome { iterations: iteration, residual, is_solved: residual <= tolerance && balance <= tolerance };
+            if outcome.is_solved || iteration == MOST_STEPS || !residual.is_finite() {
+                break;
+            }
+            if iteration > PATIENCE && iteration % 4 == 0 {
+                self.smooth(problem);
+                work.changed = true;
+                continue;
+            }
+            if iteration > 0 {
+                self.let_stick(problem, work, BACKWARDS * tolerance * scale);
+            }
+            if !self.advance(problem, kernel, gaps, work) {
+                break;
+            }
+            self.move_by(problem, work);
+        }
+        outcome
+    }
+
+    /// Takes the Newton step found last: what leaves its circle slips.
+    fn move_by(&mut self, problem: &Problem<'_>, work: &mut Work) {
+        let (n, step) = (problem.cells(), &work.step);
+        for i in problem.touching() {
+            let [x, y] = [self.traction[i] + step[i], self.traction[n + i] + step[n + i]];
+            let (bound, size) = (problem.bound[i], x.hypot(y));
+            work.began[i] = size > bound && self.cells[i] == Cell::Stick;
+            work.changed |= work.began[i];
+            if size > bound {
+                self.cells[i] = Cell::Slip;
+            }
+            let scale = if self.cells[i] == Cell::Slip && size > 0.0 { bound / size } else { 1.0 };
+            (self.traction[i], self.traction[n + i]) = (scale * x, scale * y);
+        }
+        (0..3).for_each(|k| self.motion[k] += work.change[k]);
+    }
+
+    /// Finds normals and curvatures, and the largest residual: |g| where cells stick, its tangential part and what
+    /// points along τ where they slip.
+    fn judge(&self, problem: &Problem<'_>, work: &mut Work) -> f64 {
+        let n = problem.cells();
+        let mut worst = 0.0_f64;
+        for i in problem.touching() {
+            let (traction, g) = (self.of(i), [self.gradient[i], self.gradient[n + i]]);
+            let size = traction[0].hypot(traction[1]);
+            let normal = if size > 0.0 { traction.map(|value| value / size) } else { [0.0; 2] };
+            let along = dot(g, normal);
+            let (slips, beside) = (self.cells[i] == Cell::Slip, dot(g, [-normal[1], normal[0]]).abs());
+            work.normals[i] = normal;
+            work.curvature[i] = if slips { (-along).max(0.0) / problem.bound[i] } else { 0.0 };
+            let off = if slips { beside.max(along) } else { g[0].hypot(g[1]) };
+            worst = if off.is_finite() { worst.max(off) } else { f64::INFINITY };
+        }
+        worst
+    }
+
+    /// Lets cells that would slip backwards stick.
+    fn let_stick(&mut self, problem: &Problem<'_>, work: &mut Work, least: f64) {
+        let n = problem.cells();
+        for i in problem.touching() {
+            let along = dot([self.gradient[i], self.gradient[n + i]], work.normals[i]);
+            // those that began to slip in the last step move along their circle first
+            if self.cells[i] == Cell::Slip && along > least && !work.began[i] {
+                (self.cells[i], work.curvature[i]) = (Cell::Stick, 0.0);
+                work.changed = true;
+            }
+        }
+    }
+
+    /// Keeps of a field what cells are free to do: nothing where they are apart, along the circle where they slip.
+    fn restrict(&self, normals: &[[f64; 2]], field: &mut [f64]) {
+        let n = self.cells.len();
+        for i in 0..n {
+            let kept = match self.cells[i] {
+                Cell::Apart => [0.0; 2],
+                Cell::Stick => continue,
+                Cell::Slip => {
+                    let tangent = [-normals[i][1], normals[i][0]];
+                    let part = dot(tangent, [field[i], field[n + i]]);
+                    tangent.map(|value| part * value)
+                }
+            };
+            (field[i], field[n + i]) = (kept[0], kept[1]);
+        }
+    }
+
+    /// A Newton step. Returns whether there was one.
+    fn advance(
+        &mut self,
+        problem: &Problem<'_>,
+        kernel: &mut TangentialKernel,
+        gaps: [f64; 3],
+        work: &mut Work,
+    ) -> bool {
+        let n = problem.cells();
+        for k in problem.driven() {
+            let Work { modes, answers, normals, .. } = work;
+            modes[k].fill(0.0);
+            problem.touching().for_each(|i| {
+                let mode = problem.mode(k, i);
+                (modes[k][i], modes[k][n + i]) = (mode[0], mode[1]);
+            });
+            self.restrict(normals, &mut modes[k]);
+            self.precondition(problem, kernel, &modes[k], &mut answers[k], normals);
+        }
+        let Work { step, residual, preconditioned, direction, image, modes, answers, normals, curvature, .. } = work;
+        let driven: Vec<usize> = problem.driven().collect();
+        let is_driven = |k: usize| problem.wanted[k].is_some();
+        let gram: [[f64; 3]; 3] = std::array::from_fn(|a| {
+            std::array::from_fn(|b| if is_driven(a) && is_driven(b) { inner(&modes[a], &answers[b]) } else { 0.0 })
+        });
+        let solve = |right: [f64; 3]| linalg::solve_normal_equations(&gram, right, 1e-13);
+        // x = Σ a_k W_k meets the loads; what follows stays in the null space
+        let parts = solve(gaps);
+        step.fill(0.0);
+        driven.iter().for_each(|&k| add(step, parts[k], &answers[k]));
+        residual.iter_mut().zip(&self.gradient).for_each(|(r, g)| *r = -g);
+        self.restrict(normals, residual);
+        if driven.iter().any(|&k| parts[k] != 0.0) {
+            self.operate(problem, kernel, step, image, (normals, curvature));
+            add(residual, -1.0, image);
+        }
+        // takes B ν out of a residual, and adds ν to what was taken before
+        let mut multipliers = [0.0; 3];
+        let mut project = |kernel: &mut TangentialKernel, residual: &mut [f64], out: &mut Vec<f64>| {
+            self.precondition(problem, kernel, residual, out, normals);
+            let along = [0, 1, 2].map(|k| if is_driven(k) { inner(&modes[k], out) } else { 0.0 });
+            let taken = solve(along);
+            for &k in &driven {
+                add(out, -taken[k], &answers[k]);
+                add(residual, -taken[k], &modes[k]);
+                multipliers[k] += taken[k];
+            }
+            (0..3).map(|k| along[k] * taken[k]).sum::<f64>()
+        };
+        let carried = project(kernel, residual, preconditioned);
+        direction.copy_from_slice(preconditioned);
+        let mut size = inner(residual, preconditioned);
+        if size <= NOTHING * carried {
+            // the loads leave nothing free
+            size = 0.0;
+        }
+        let first = size;
+        for _ in 0..MOST_GRADIENTS {
+            if size <= 0.0 || size.is_nan() {
+                break;
+            }
+            self.operate(problem, kernel, direction, image, (normals, curvature));
+            let length = size / inner(direction, image);
+            if !length.is_finite() {
+                return false;
+            }
+            add(step, length, direction);
+            add(residual, -length, image);
+            project(kernel, residual, preconditioned);
+            let next = inner(residual, preconditioned);
+            if next < FORCING * FORCING * first {
+                break;
+            }
+            direction.iter_mut().zip(&*preconditioned).for_each(|(p, z)| *p = z + next / size * *p);
+            size = next;
+        }
+        // the step leaves −B ν of the gradient. A further motion takes a B Δd of it, which is B P Δd as far as the loads feel it:
+        // by M at first, then as the steps show (Broyden), while the same cells slip
+        let met: [[f64; 3]; 3] = std::array::from_fn(|a| {
+            std::array::from_fn(|b| {
+                let share =
+                    |i: usize| problem.entered[i] * (answers[a][i] * modes[b][i] + answers[a][n + i] * modes[b][n + i]);
+                if is_driven(a) && is_driven(b) { (0..n).map(share).sum() } else { 0.0 }
+            })
+        });
+        let left = multipliers.map(|value| -value);
+        let mut secant = work.secant.unwrap_or_else(|| Secant::new(|b| solve([0, 1, 2].map(|a| met[a][b]))));
+        if !work.changed && work.secant.is_some() {
+            secant.learn(left);
+        }
+        work.change = secant.motion(left);
+        (work.secant, work.changed) = (Some(secant), false);
+        true
+    }
+
+    /// M, restricted to what cells are free to do.
+    fn precondition(
+        &self,
+        problem: &Problem<'_>,
+        kernel: &mut TangentialKernel,
+        field: &[f64],
+        out: &mut [f64],
+        normals: &[[f64; 2]],
+    ) {
+        kernel.apply_inverse(field, out);
+        self.restrict(normals, out);
+        out.iter_mut().for_each(|value| *value /= problem.compliance);
+    }
+
+    /// c K, restricted, and the curvature of the circles.
+    fn operate(
+        &self,
+        problem: &Problem<'_>,
+        kernel: &mut TangentialKernel,
+        field: &[f64],
+        out: &mut [f64],
+        (normals, curvature): (&[[f64; 2]], &[f64]),
+    ) {
+        kernel.apply(field, out);
+        self.restrict(normals, out);
+        let n = problem.cells();
+        out.iter_mut().for_each(|value| *value *= problem.compliance);
+        for i in problem.touching().filter(|&i| curvature[i] > 0.0) {
+            out[i] += curvature[i] * field[i];
+            out[n + i] += curvature[i] * field[n + i];
+        }
+    }
+}
+
+fn inner(a: &[f64], b: &[f64]) -> f64 {
+    crate::dense::product(a, b)
+}
+
+fn add(to: &mut [f64], factor: f64, field: &[f64]) {
+    to.iter_mut().zip(field).for_each(|(to, value)| *to += factor * value);
+}
