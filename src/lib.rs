@@ -155,8 +155,10 @@ mod equilibrium;
 mod error;
 mod events;
 mod extent;
+#[cfg(any(feature = "analytic", feature = "sliding", feature = "stress", feature = "surfaces"))]
 mod fft;
 pub mod fields;
+#[cfg(any(feature = "checkpoint", feature = "output", feature = "sliding", feature = "states", feature = "text"))]
 mod file;
 pub mod geometry;
 mod grid;
@@ -201,8 +203,10 @@ mod sum;
 
 pub use axis::Axis;
 pub use contact::ViscoelasticContact;
+#[cfg(feature = "text")]
+pub use error::TextError;
 pub use error::{
-    Convergence, Error, ErrorKind, FileError, KernelError, OutputError, Result, Special, TextError, Trend, UserError,
+    Convergence, Error, ErrorKind, FileError, KernelError, OutputError, Result, Special, Trend, UserError,
 };
 pub use grid::Grid;
 #[cfg(feature = "text")]

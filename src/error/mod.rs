@@ -11,14 +11,19 @@ mod file;
 mod kernel;
 mod kind;
 mod load;
+#[cfg(feature = "surfaces")]
 mod map;
 mod material;
 mod output;
 mod ranks;
+#[cfg(feature = "sliding")]
 mod sliding;
+#[cfg(feature = "states")]
 mod states;
 mod step;
+#[cfg(feature = "data")]
 mod table;
+#[cfg(feature = "text")]
 mod text;
 mod user;
 mod violation;
@@ -36,14 +41,19 @@ pub use file::FileError;
 pub use kernel::KernelError;
 pub use kind::ErrorKind;
 pub use load::LoadError;
+#[cfg(feature = "surfaces")]
 pub use map::MapError;
 pub use material::MaterialError;
 pub use output::OutputError;
 pub use ranks::RanksError;
+#[cfg(feature = "sliding")]
 pub use sliding::SlidingError;
+#[cfg(feature = "states")]
 pub use states::StatesError;
 pub use step::StepError;
+#[cfg(feature = "data")]
 pub use table::{Place, TableError};
+#[cfg(feature = "text")]
 pub use text::TextError;
 pub use user::UserError;
 pub(crate) use user::{Failure, or_failure_of};
@@ -186,6 +196,7 @@ pub enum Error {
     Kernel(#[from] KernelError),
 
     /// A steady motion was not found, or there is none.
+    #[cfg(feature = "sliding")]
     #[error(transparent)]
     Sliding(#[from] SlidingError),
 
@@ -198,14 +209,17 @@ pub enum Error {
     File(#[from] FileError),
 
     /// A table in a text file cannot be read.
+    #[cfg(feature = "text")]
     #[error(transparent)]
     Text(#[from] TextError),
 
     /// A table of measured data is not allowed.
+    #[cfg(feature = "data")]
     #[error(transparent)]
     Table(#[from] TableError),
 
     /// A height map, or its file, is not allowed.
+    #[cfg(feature = "surfaces")]
     #[error(transparent)]
     Map(#[from] MapError),
 
@@ -220,6 +234,7 @@ pub enum Error {
     #[error(transparent)]
     Adhesion(#[from] AdhesionError),
     /// A contact on elastic states is not covered by them.
+    #[cfg(feature = "states")]
     #[error(transparent)]
     States(#[from] StatesError),
 
@@ -247,6 +262,7 @@ pub enum Error {
     },
 
     /// A [`Study`](crate::study::Study) found no domain that holds the contact: none is large enough.
+    #[cfg(feature = "study")]
     #[error(
         "no domain was found that holds the contact (the last one tried was {length:.1e} m wide): check geometry \
         and load"

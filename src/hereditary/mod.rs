@@ -21,6 +21,7 @@ mod branch_energies;
 mod error_weight;
 mod exponential_rule;
 mod field;
+#[cfg(feature = "states")]
 mod group_history;
 mod history;
 mod interval;
@@ -40,6 +41,7 @@ pub(crate) use exponential_rule::{ExponentialRule, Interpolant};
 pub(crate) use field::{Field, Role};
 #[cfg(feature = "checkpoint")]
 pub(crate) use field::{interleaved, runs};
+#[cfg(feature = "states")]
 pub(crate) use group_history::GroupHistory;
 pub(crate) use history::History;
 pub(crate) use interval::{HistoryInputs, Interval};

@@ -62,6 +62,7 @@
 //! are of the same ranks.
 
 mod exchange;
+#[cfg(any(feature = "checkpoint", feature = "output"))]
 mod file;
 mod lanes;
 mod ranks;

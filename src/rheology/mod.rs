@@ -89,7 +89,9 @@ mod tension;
 mod time_temperature;
 mod zener;
 
-pub use crate::error::{MaterialError, Place, TableError};
+pub use crate::error::MaterialError;
+#[cfg(feature = "data")]
+pub use crate::error::{Place, TableError};
 pub use burgers::Burgers;
 pub use elastic::Elastic;
 pub use fit::{FitReport, FitSample, FitWarning, MaterialFunction};
