@@ -114,8 +114,9 @@
 //! |---|---|
 //! | `analytic` | [`analytic`] |
 //! | `checkpoint` | save and resume: [`ViscoelasticContact::save`], [`run::Run::autosave_to`] |
-//! | `data` | [`rheology::Measurements`], [`rheology::MasterCurve`], [`numeric::least_squares`] |
+//! | `data` | [`rheology::Measurements`], [`rheology::MasterCurve`], [`rheology::library`], [`numeric::least_squares`] |
 //! | `laws` | [`laws`]: laws for shapes, rheologies and histories, `proptest` strategies |
+//! | `layers` | [`Layer`] |
 //! | `output` | [`output`]: CSV, VTK |
 //! | `plot` | [`plot`]: PNG, SVG and GIF |
 //! | `sliding` | [`sliding`] |
@@ -123,6 +124,7 @@
 //! | `study` | [`study`] |
 //! | `stress` | [`observe::SubsurfaceStress`], [`contact::StressHistory`] |
 //! | `surfaces` | [`geometry::HeightMap`], [`geometry::Rough`], [`geometry::SurfaceStatistics`] |
+//! | `temperature` | [`rheology::TimeTemperature`], [`rheology::TemperatureHistory`] |
 //! | `text` | [`input`] |
 //!
 //! Beside the rooms: `rayon` (default): threads, from 2¹⁵ computed cells on. `npy`: NPZ and NPY files. `x3p`: X3P height
@@ -211,7 +213,9 @@ pub use error::{
 pub use grid::Grid;
 #[cfg(feature = "text")]
 pub use input::{Delimiter, TextFormat};
-pub use kernel::{InfluenceKernel, Layer, Workspace};
+#[cfg(feature = "layers")]
+pub use kernel::Layer;
+pub use kernel::{InfluenceKernel, Workspace};
 /// The crate of the complex numbers of moduli and compliances.
 pub use num_complex;
 
@@ -226,6 +230,8 @@ pub use num_complex;
 /// # Ok::<(), Error>(())
 /// ```
 pub mod prelude {
+    #[cfg(feature = "layers")]
+    pub use crate::Layer;
     pub use crate::contact::{
         BodyState, Builder, Edge, Frame, Settings, Snapshot, StepError, StepReport, TimeRule, ViscoelasticContact,
         Warnings,
@@ -254,7 +260,7 @@ pub mod prelude {
     pub use crate::states::{ElasticStates, Reach, StatesContact, Sweep};
     #[cfg(feature = "study")]
     pub use crate::study::{Accuracy, Observable, Study};
-    pub use crate::{Axis, Error, Grid, InfluenceKernel, Layer};
+    pub use crate::{Axis, Error, Grid, InfluenceKernel};
 }
 
 #[doc = include_str!("../README.md")]

@@ -6,9 +6,8 @@ use std::sync::Arc;
 
 use super::even_spectrum::{Symbol, even_spectrum};
 use super::layout::{is_fast, waves_at};
-use super::line_load::{Strip, uniform};
-use super::love::{self, Love};
-use super::{Ends, InfluenceKernel, Layer, Layout, Remainder, Shares, wave_number};
+use super::line_load::uniform;
+use super::{Ends, InfluenceKernel, Layer, Layout, Shares, wave_number};
 use crate::Grid;
 
 /// The response \[m\] at two indices, one for each axis: a wave number of the grid along a periodic axis, a distance
@@ -18,17 +17,6 @@ pub(super) type Response = Arc<dyn Fn([usize; 2]) -> f64 + Send + Sync>;
 
 /// Least compliance of a wave in the approximate inverse, relative to the greatest of all waves.
 const LEAST_COMPLIANCE: f64 = 1e-8;
-
-/// From so many thicknesses on a layer displaces as its base.
-const FARTHEST: f64 = 1e12;
-
-/// What a unit pressure on a cell displaces along a row of points.
-pub(crate) struct Row {
-    /// At a distance along the row \[m\].
-    pub(crate) influence: Box<dyn Fn(f64) -> f64 + Send + Sync>,
-    /// How far the cell, and what lies below it, is from the row \[m\].
-    pub(crate) aside: f64,
-}
 
 /// What lies below the surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -171,63 +159,6 @@ impl InfluenceKernel {
     /// The compliance \[m\] of the wave with these absolute numbers of a body that is periodic along both axes.
     pub(crate) fn of_wave(&self, k: [usize; 2]) -> f64 {
         (self.response)(k)
-    }
-
-    /// Distance from a line load at which the displacement is zero \[m\].
-    pub(crate) fn datum(&self) -> Option<f64> {
-        self.datum
-    }
-
-    /// What a unit pressure displaces at any distance along `axis`, in rows aside of it: at the distances of cells,
-    /// or of each wave where bodies are periodic along the other axis. `None` for bodies that are periodic along the
-    /// axis, and of coefficients.
-    ///
-    /// At a `depth` below a half-space, which may be 0, or of the layer.
-    pub(crate) fn rows_along(&self, axis: usize, depth: Option<f64>) -> Option<Vec<Row>> {
-        let (spacing, cells, layer) = (self.grid.spacing(), self.grid.cells()[1 - axis], self.layer_of().copied());
-        if self.body == Body::User || self.periodic[axis] {
-            return None;
-        }
-        let below = depth.unwrap_or(0.0);
-        // the layer is a half-space beyond
-        let far = layer.map_or(0.0, |layer| FARTHEST * layer.thickness());
-        let added = |wave: Option<f64>| match (layer, wave) {
-            _ if depth.is_some() => None,
-            (Some(layer), None) => Some(Remainder::of_cells(&layer, far)),
-            (Some(layer), Some(0.0)) => Some(Remainder::of_lines(&layer, far, self.datum)),
-            (Some(layer), Some(kappa)) => Remainder::of_wave(&layer, far, kappa),
-            (None, _) => None,
-        };
-        let longest = layer.filter(|_| depth.is_none()).map_or(1.0, |layer| layer.longest_over_half_space());
-        if self.periodic[1 - axis] {
-            let datum = self.datum.or_else(|| Some(2.0 * layer?.thickness()))?;
-            let strip = Strip { side: spacing[axis], datum };
-            let row = |k: usize| {
-                let kappa = wave_number(k, cells, spacing[1 - axis]);
-                let added = added(Some(kappa));
-                let influence = move |x: f64| match &added {
-                    _ if below > 0.0 => strip.below(x, below),
-                    Some(_) if x > far => longest * strip.at(x, kappa),
-                    Some(added) => strip.at(x, kappa) + added.on_line(x, strip.side),
-                    None => strip.at(x, kappa),
-                };
-                Row { influence: Box::new(influence), aside: below }
-            };
-            return Some((0..=cells / 2).map(row).collect());
-        }
-        let (love, added) = (Arc::new(Love::new(spacing)), added(None).map(Arc::new));
-        let row = |j: usize| {
-            let (y, love, added) = (j as f64 * spacing[1 - axis], Arc::clone(&love), added.clone());
-            let at = move |x: f64| if axis == 0 { [x, y] } else { [y, x] };
-            let influence = move |x: f64| match &added {
-                _ if below > 0.0 => love::below(spacing, at(x), below),
-                Some(_) if x > far => longest * love.at(at(x)),
-                Some(added) => love.at(at(x)) + added.on_cell(at(x), spacing),
-                None => love.at(at(x)),
-            };
-            Row { influence: Box::new(influence), aside: (y - 0.5 * spacing[1 - axis]).max(0.0).hypot(below) }
-        };
-        Some((0..cells).map(row).collect())
     }
 
     /// The greatest compliance of a wave \[m\], if the mean has none.

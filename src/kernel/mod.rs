@@ -20,18 +20,27 @@ mod constructors;
 mod definiteness;
 mod even_spectrum;
 mod influence;
+#[cfg(feature = "layers")]
 mod layer;
+#[cfg(not(feature = "layers"))]
+#[path = "no_layer.rs"]
+mod layer;
+#[cfg(feature = "layers")]
 mod layered;
 mod layout;
 mod line_load;
 mod lines;
 mod love;
+#[cfg(feature = "sliding")]
+mod rows;
 mod transform;
 
-pub(crate) use influence::{HalfSpace, Row};
+pub(crate) use influence::HalfSpace;
 pub use layer::Layer;
 pub(crate) use layout::{fast_length, images, waves_at};
 pub(crate) use line_load::wave_number;
+#[cfg(feature = "sliding")]
+pub(crate) use rows::Row;
 pub(crate) use transform::{SpectralOperator, TransformWorkspace};
 
 use std::sync::{Arc, OnceLock};
@@ -41,7 +50,6 @@ use crate::parallel::Rows;
 use crate::{Grid, memory};
 use even_spectrum::Symbol;
 use influence::{Body, Response, magnitude};
-use layer::Remainder;
 use layout::{Ends, Layout};
 use line_load::Strip;
 use love::Love;

@@ -71,6 +71,7 @@ mod kelvin_voigt;
 mod kww;
 #[cfg(feature = "laws")]
 pub mod laws;
+#[cfg(feature = "data")]
 pub mod library;
 mod log_creep;
 mod material;
@@ -79,14 +80,16 @@ mod mittag_leffler;
 mod own_series;
 mod power_law;
 mod series;
-mod shifted;
 mod slow_creep;
 mod spectrum;
 #[cfg(feature = "data")]
 mod table;
-mod temperature_history;
+#[cfg(feature = "temperature")]
+mod temperature;
+#[cfg(not(feature = "temperature"))]
+#[path = "no_temperature.rs"]
+mod temperature;
 mod tension;
-mod time_temperature;
 mod zener;
 
 pub use crate::error::MaterialError;
@@ -107,17 +110,16 @@ pub(crate) use material::{Compressibility, Volume};
 pub use maxwell::Maxwell;
 pub use power_law::PowerLaw;
 pub use series::CreepSeries;
-pub use shifted::ShiftedRheology;
 pub use slow_creep::SlowCreep;
 #[cfg(feature = "checkpoint")]
 pub(crate) use spectrum::SavedRelaxation;
 pub use spectrum::{CreepSpectrum, GeneralizedKelvin, RelaxationSpectrum};
 #[cfg(feature = "data")]
 pub use table::{Experiment, Isotherm, MasterCurve, Measurements, Units};
-pub use temperature_history::TemperatureHistory;
+#[cfg(feature = "data")]
+pub(crate) use temperature::GAS_CONSTANT;
+pub use temperature::*;
 pub use tension::Tension;
-pub(crate) use time_temperature::GAS_CONSTANT;
-pub use time_temperature::TimeTemperature;
 pub use zener::Zener;
 
 use std::fmt::Debug;

@@ -17,7 +17,6 @@ use crate::error::{AdhesionError, Error, Result, Special, coverage};
 use crate::error::{length, or_failure_of, positive};
 use crate::geometry::{Gap, Missed};
 use crate::hereditary::History;
-use crate::kernel::Layer;
 use crate::parallel::{Ranks, Rows};
 use crate::rheology::Material;
 
@@ -184,7 +183,7 @@ impl Builder {
         let ground = Ground::of(&self.grid, self.kernel.as_ref(), self.settings, bodies)?;
         let kernel = &ground.kernel;
         if let Some(layer) = kernel.layer_of() {
-            Layer::check_material(layer.poisson_ratio(), &material.poisson_ratios().collect::<Vec<_>>())?;
+            material.check_ratio_of(layer.poisson_ratio())?;
         }
         if let Some(times) = &self.times {
             material = times.fit(&material, self.temperature.as_ref(), self.settings.series_tolerance)?;

@@ -10,7 +10,7 @@ use std::sync::Arc;
 use crate::Grid;
 use crate::adhesion::Attraction;
 use crate::contact::{Settings, ViscoelasticContact};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::geometry::{Geometry, Waves, evaluate};
 use crate::kernel::InfluenceKernel;
 use crate::load::LoadHistory;
@@ -22,8 +22,6 @@ use crate::rheology::{Material, TemperatureHistory};
 const SHORTEST_PART: f64 = 1e-6;
 /// Number of corners of the load that are compared.
 const MAX_CORNERS: usize = 1000;
-/// Number of temperatures among which the slowest creep of a run is sought.
-const TEMPERATURES: i32 = 64;
 
 /// The parts of a [`ViscoelasticContact`]; see [`ViscoelasticContact::builder`].
 #[derive(Debug, Clone)]
@@ -249,11 +247,7 @@ impl RunTimes {
         let (mut first, mut last) = (*self.range.start(), *self.range.end());
         if self.of_run {
             if let Some(history) = temperature {
-                let slowest = (0..=TEMPERATURES).try_fold(f64::INFINITY, |least: f64, k| {
-                    let rate = history.rate(last * f64::from(k) / f64::from(TEMPERATURES))?;
-                    Ok::<_, Error>(least.min(rate))
-                })?;
-                (first, last) = (first * slowest, history.reduced_time(0.0, last)?);
+                (first, last) = (first * history.slowest(last)?, history.reduced_time(0.0, last)?);
             }
             last = last.min(material.known_until()).max(first);
         }
