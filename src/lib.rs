@@ -112,9 +112,11 @@
 //!
 //! | feature | room |
 //! |---|---|
+//! | `adhesion` | [`adhesion`], [`contact::Builder::attraction`] |
 //! | `analytic` | [`analytic`] |
 //! | `checkpoint` | save and resume: [`ViscoelasticContact::save`], [`run::Run::autosave_to`] |
 //! | `data` | [`rheology::Measurements`], [`rheology::MasterCurve`], [`rheology::library`], [`numeric::least_squares`] |
+//! | `energies` | [`contact::EnergyBalance`] |
 //! | `laws` | [`laws`]: laws for shapes, rheologies and histories, `proptest` strategies |
 //! | `layers` | [`Layer`] |
 //! | `output` | [`output`]: CSV, VTK |
@@ -145,10 +147,12 @@
 #[macro_use]
 mod values;
 
+#[cfg(feature = "adhesion")]
 pub mod adhesion;
 #[cfg(feature = "analytic")]
 pub mod analytic;
 mod ascending;
+mod attraction;
 mod axis;
 pub mod contact;
 mod dense;

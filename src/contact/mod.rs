@@ -40,12 +40,14 @@ pub use crate::fields::BodyState;
 pub use builder::Builder;
 pub use builder::memory::Memory;
 pub use moving::along_path::TravelReport;
+#[cfg(feature = "energies")]
 pub use read::energies::{Energies, EnergyBalance};
 pub(crate) use read::limits::Limits;
 pub use read::report::{Estimated, StepReport};
 #[cfg(feature = "stress")]
 pub use read::stress::StressHistory;
 pub use state::snapshot::Snapshot;
+#[cfg(feature = "adhesion")]
 pub use step::attraction::PassReport;
 pub use stepper::ViscoelasticContact;
 

@@ -1,6 +1,6 @@
 //! What sort of failure an error is.
 
-use crate::error::{AdhesionError, Error, KernelError, MaterialError, StepError};
+use crate::error::{Error, KernelError, MaterialError, StepError};
 
 /// What sort of failure an [`Error`] is, for programs that map errors to others. The error itself tells field, value
 /// and cure.
@@ -35,6 +35,8 @@ impl Error {
             Error::File(_) | Error::Output(_) => ErrorKind::File,
             #[cfg(feature = "checkpoint")]
             Error::Checkpoint { .. } => ErrorKind::File,
+            #[cfg(feature = "adhesion")]
+            Error::Adhesion(error) => error.error_kind(),
             #[cfg(feature = "text")]
             Error::Text(_) => ErrorKind::File,
             #[cfg(feature = "surfaces")]
@@ -46,7 +48,6 @@ impl Error {
             Error::OutOfMemory { .. } => ErrorKind::Memory,
             Error::Cancelled { .. } | Error::Ranks(_) => ErrorKind::Cancelled,
             Error::Material(MaterialError::PoorFit { .. })
-            | Error::Adhesion(AdhesionError::NotConverged { .. } | AdhesionError::FillsGrid { .. })
             | Error::Step(StepError::NotConverged { .. } | StepError::StepTooShort { .. }) => ErrorKind::Convergence,
             Error::NotCovered { .. }
             | Error::Kernel(KernelError::NoStress { .. })

@@ -1,5 +1,6 @@
 //! The error type of the crate, and the checks that return it.
 
+#[cfg(feature = "adhesion")]
 mod adhesion;
 #[cfg(feature = "checkpoint")]
 mod checkpoint;
@@ -26,8 +27,10 @@ mod table;
 #[cfg(feature = "text")]
 mod text;
 mod user;
+#[cfg(feature = "adhesion")]
 mod violation;
 
+#[cfg(feature = "adhesion")]
 pub use adhesion::AdhesionError;
 #[cfg(feature = "checkpoint")]
 pub use checkpoint::CheckpointError;
@@ -57,7 +60,9 @@ pub use table::{Place, TableError};
 pub use text::TextError;
 pub use user::UserError;
 pub(crate) use user::{Failure, or_failure_of};
+#[cfg(feature = "laws")]
 pub(crate) use violation::KIND_OF_LOAD;
+#[cfg(feature = "adhesion")]
 pub use violation::{Location, Verdict, Violation};
 
 use crate::rounded::{rounded, without_noise};
@@ -231,6 +236,7 @@ pub enum Error {
     #[error(transparent)]
     Ranks(#[from] RanksError),
     /// A contact of surfaces that attract each other is not covered, not resolved, or comes off.
+    #[cfg(feature = "adhesion")]
     #[error(transparent)]
     Adhesion(#[from] AdhesionError),
     /// A contact on elastic states is not covered by them.

@@ -19,7 +19,7 @@ pub use body::BodyState;
 pub use kept::KeptFields;
 pub(crate) use view::{Surface, View};
 
-use crate::adhesion::Attraction;
+use crate::attraction::Attraction;
 use crate::equilibrium::{Frame, Ground, Held, Region, Settings};
 use crate::error::{Result, Special, coverage, exact_length};
 use crate::extent::Extent;

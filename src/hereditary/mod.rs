@@ -17,6 +17,7 @@
 //! [`RememberedField`] is a field at the start of a step and at its end, with its past. It serves the displacement, the far
 //! field of a window, and the moving frame alike.
 
+#[cfg(feature = "energies")]
 mod branch_energies;
 mod error_weight;
 mod exponential_rule;
@@ -36,6 +37,7 @@ mod step_context;
 mod time_error;
 mod weights;
 
+#[cfg(feature = "energies")]
 pub(crate) use branch_energies::BranchEnergies;
 pub(crate) use exponential_rule::{ExponentialRule, Interpolant};
 pub(crate) use field::{Field, Role};

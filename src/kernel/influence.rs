@@ -16,7 +16,7 @@ use crate::Grid;
 pub(super) type Response = Arc<dyn Fn([usize; 2]) -> f64 + Send + Sync>;
 
 /// Least compliance of a wave in the approximate inverse, relative to the greatest of all waves.
-const LEAST_COMPLIANCE: f64 = 1e-8;
+pub(super) const LEAST_COMPLIANCE: f64 = 1e-8;
 
 /// What lies below the surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -135,20 +135,6 @@ impl InfluenceKernel {
         (layout, symbol)
     }
 
-    /// The near field of an operator that ends: a layout without padding, and the factor of each of its waves. It is
-    /// the operator between cells that are less than half of the grid apart; farther ones act as if they were nearer,
-    /// the other way round.
-    pub(super) fn near(&self, cells: [usize; 2], folded: [bool; 2]) -> Option<(Layout, Symbol)> {
-        if self.periodic == [true; 2] {
-            return None;
-        }
-        let layout = Layout { cells, ends: self.ends(), folded }.ending(Ends::Closed);
-        let symbol = self.symbol(layout, None);
-        let most = waves(layout).map(|[k1, k2]| symbol(k1, k2)).fold(0.0, f64::max);
-        // energies stay positive
-        Some((layout, Box::new(move |k1, k2| symbol(k1, k2).max(LEAST_COMPLIANCE * most))))
-    }
-
     /// All values of the response of a grid, and how many belong to an index along x1.
     pub(super) fn table(&self) -> (impl Iterator<Item = f64>, usize) {
         let cells = self.grid.cells();
@@ -246,63 +232,11 @@ pub(super) fn longest_side(grid: &Grid) -> f64 {
 }
 
 /// The independent waves of a layout.
-fn waves(layout: Layout) -> impl Iterator<Item = [usize; 2]> {
+pub(super) fn waves(layout: Layout) -> impl Iterator<Item = [usize; 2]> {
     indices([0, 1].map(|axis| layout.period(axis) / 2 + 1))
 }
 
 /// All pairs of indices below the `count` of each axis.
 pub(super) fn indices([n1, n2]: [usize; 2]) -> impl Iterator<Item = [usize; 2]> {
     (0..n1).flat_map(move |k1| (0..n2).map(move |k2| [k1, k2]))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::kernel::layer::Layer;
-
-    /// Between cells less than half of the grid apart, and their mirror images, the near field is the operator, on
-    /// the half-space and on a layer, whether the cells make the transform fast or not. Nowhere does it give energy
-    /// away.
-    #[test]
-    fn the_near_field_is_the_operator_nearby() {
-        for (cells, folded) in [([16, 12], [false; 2]), ([17, 23], [false; 2]), ([16, 24], [true, true])] {
-            let grid = Grid::new(cells, [1.0, 1.3]).unwrap();
-            let layer = Layer::bonded_to_rigid(0.2, 0.45).unwrap();
-            for whole in [InfluenceKernel::half_space(&grid).unwrap(), InfluenceKernel::layer(&grid, layer).unwrap()] {
-                let own = [0, 1].map(|axis| cells[axis] / if folded[axis] { 2 } else { 1 });
-                let part = Grid::new(own, [0, 1].map(|axis| grid.spacing()[axis] * own[axis] as f64)).unwrap();
-                let kernel = whole.on(&part, folded);
-                let (near, mut work_near) = kernel.near().unwrap();
-                let mut work = kernel.workspace();
-                // all that acts lies within a square of half of the grid
-                let begin = [0, 1].map(|axis| if folded[axis] { 0 } else { cells[axis] / 4 });
-                let count = [0, 1].map(|axis| cells[axis] / if folded[axis] { 4 } else { 2 });
-                let acts = |k: usize| {
-                    [k / own[1], k % own[1]]
-                        .iter()
-                        .zip(begin)
-                        .zip(count)
-                        .all(|((&i, begin), count)| i >= begin && i < begin + count)
-                };
-                let field: Vec<f64> =
-                    (0..part.len()).map(|k| if acts(k) { ((k * k + 3) as f64).sin() } else { 0.0 }).collect();
-                let (mut exact, mut found) = (vec![0.0; field.len()], vec![0.0; field.len()]);
-                kernel.apply(&field, &mut exact, &mut work);
-                work.swap(&mut work_near);
-                near.apply(&field, &mut found, &mut work);
-                let most = exact.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
-                for k in (0..field.len()).filter(|&k| acts(k)) {
-                    assert!(
-                        (exact[k] - found[k]).abs() < 1e-12 * most,
-                        "{cells:?}, {folded:?}, cell {k}: {} {}",
-                        exact[k],
-                        found[k]
-                    );
-                }
-                let waves: Vec<f64> = (0..field.len()).map(|k| ((7 * k * k + k) as f64).cos()).collect();
-                near.apply(&waves, &mut found, &mut work);
-                assert!(waves.iter().zip(&found).map(|(p, v)| p * v).sum::<f64>() > 0.0);
-            }
-        }
-    }
 }

@@ -11,7 +11,6 @@
 
 use std::f64::consts::{FRAC_2_PI, TAU};
 
-
 /// Step of the trapezoidal rule for ∫ f(cosh t) dt: the integrand being analytic up to π/2 from the real axis, its
 /// error is e^(−π²/step) of the coefficient of a cell on itself.
 const STEP: f64 = 0.25;

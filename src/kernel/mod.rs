@@ -31,6 +31,8 @@ mod layout;
 mod line_load;
 mod lines;
 mod love;
+#[cfg(feature = "adhesion")]
+mod near;
 #[cfg(feature = "sliding")]
 mod rows;
 mod transform;
@@ -39,6 +41,8 @@ pub(crate) use influence::HalfSpace;
 pub use layer::Layer;
 pub(crate) use layout::{fast_length, images, waves_at};
 pub(crate) use line_load::wave_number;
+#[cfg(feature = "adhesion")]
+pub(crate) use near::{Mean, PeriodInverse};
 #[cfg(feature = "sliding")]
 pub(crate) use rows::Row;
 pub(crate) use transform::{SpectralOperator, TransformWorkspace};
@@ -48,7 +52,6 @@ use std::sync::{Arc, OnceLock};
 use crate::error::{Error, KernelError, Result, exact_length, finite};
 use crate::parallel::Rows;
 use crate::{Grid, memory};
-use even_spectrum::Symbol;
 use influence::{Body, Response, magnitude};
 use layout::{Ends, Layout};
 use line_load::Strip;
@@ -128,32 +131,6 @@ pub(crate) struct LocalKernel {
     rows: Rows,
     folded: [bool; 2],
     operator: Arc<SpectralOperator>,
-}
-
-/// M, the inverse of a kernel that is periodic along both axes, or of a near field, wave by wave. A mean without
-/// compliance has a stiffness of its own.
-#[derive(Debug, Clone)]
-pub(crate) struct PeriodInverse {
-    operator: SpectralOperator,
-    own: TransformWorkspace,
-    pub(crate) mean: Mean,
-}
-
-/// What M and its kernel do to the mean of a field.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Mean {
-    /// Of M \[1/m\].
-    pub(crate) stiffness: f64,
-    /// Of its kernel \[m\].
-    pub(crate) compliance: f64,
-}
-
-impl PeriodInverse {
-    /// out ← M field.
-    pub(crate) fn apply(&mut self, field: &[f64], out: &mut [f64], lender: &mut Workspace) {
-        out.copy_from_slice(field);
-        self.operator.apply_beside(out, &mut self.own, &mut lender.0);
-    }
 }
 
 impl InfluenceKernel {
@@ -347,33 +324,6 @@ impl LocalKernel {
         let inverse = SpectralOperator::new(layout, Shares::new(&layout, &self.rows), symbol);
         let work = inverse.workspace_sharing(&self.operator);
         (inverse, work)
-    }
-
-    /// The inverse of a kernel that is periodic along both axes, or of the near field.
-    pub(crate) fn period_inverse(&self) -> PeriodInverse {
-        let (cells, folded) = (self.rows.cells(), self.folded);
-        let near = self.whole.near(cells, folded).map(|(layout, near)| {
-            let mean = near(0, 0);
-            let inverse: Symbol = Box::new(move |k1, k2| 1.0 / near(k1, k2));
-            (layout, inverse, mean)
-        });
-        let (layout, symbol, compliance) = near.unwrap_or_else(|| {
-            let (layout, inverse) = self.whole.inverse(cells, folded);
-            (layout, inverse, self.whole.of_wave([0, 0]))
-        });
-        let mean = Mean { stiffness: symbol(0, 0), compliance };
-        let operator = SpectralOperator::new(layout, Shares::new(&layout, &self.rows), symbol);
-        let own = operator.workspace_sharing(&self.operator);
-        PeriodInverse { operator, own, mean }
-    }
-
-    /// The near field, [`InfluenceKernel::near`], and its work space without tiles: those of [`LocalKernel::workspace`]
-    /// suffice. `None` of periodic bodies.
-    pub(crate) fn near(&self) -> Option<(LocalKernel, Workspace)> {
-        let (layout, symbol) = self.whole.near(self.rows.cells(), self.folded)?;
-        let operator = SpectralOperator::new(layout, Shares::new(&layout, &self.rows), symbol);
-        let work = Workspace(operator.workspace_sharing(&self.operator));
-        Some((LocalKernel { operator: Arc::new(operator), ..self.clone() }, work))
     }
 
     /// Axes along which the cells are one whole period.

@@ -8,38 +8,39 @@
 use crate::contact::step::Attempt;
 use crate::contact::step::error_in_time::{error_in_time, least_sizes};
 use crate::contact::{Computation, State, Step, ViscoelasticContact};
-use crate::error::Result;
+use crate::error::{AdhesionError, Error, Result};
 use crate::hereditary::{Interval, StepContext, TimeError, WEIGHTS};
 use crate::load::LoadHistory;
+use crate::run::adaptive_step::{StepSearch, Tried, add_work};
 
 /// The step that was divided last.
 #[derive(Debug, Clone)]
 pub struct Halves {
     /// The state at its start.
-    pub(super) start: State,
+    start: State,
     /// The time at its middle.
-    pub(super) middle: f64,
+    middle: f64,
     /// z − s, u and v at the end of the whole step.
     whole: [Vec<f64>; 3],
 }
 
 /// A step whose first half is the state, and whose second half was tried.
-pub(super) struct Divided {
-    pub(super) attempt: Attempt,
+struct Divided {
+    attempt: Attempt,
     /// By how much they differ from the whole step, relative as [`TimeError::relative`].
-    pub(super) difference: f64,
+    difference: f64,
     /// The errors of each.
-    pub(super) errors: [TimeError; 2],
+    errors: [TimeError; 2],
 }
 
 impl Halves {
-    pub(super) fn new(state: &State) -> Halves {
+    fn new(state: &State) -> Halves {
         let field = || vec![0.0; state.held.region.len()];
         Halves { start: state.clone(), middle: f64::NAN, whole: [field(), field(), field()] }
     }
 
     /// Takes the first half of a step that was tried, and tries the second, which takes the place of the `step`.
-    pub(super) fn divide(
+    fn divide(
         &mut self,
         contact: &mut ViscoelasticContact,
         step: &mut Step<'_>,
@@ -75,6 +76,11 @@ impl Halves {
         contact.go_to(&self.start);
     }
 
+    /// Its start, where the second half begins at this time.
+    pub(super) fn start_of(&self, second: f64) -> Option<&State> {
+        (self.middle == second).then_some(&self.start)
+    }
+
     fn keep(&mut self, tried: &Computation) {
         let Computation { state, trial, .. } = tried;
         self.start.clone_from(state);
@@ -101,19 +107,43 @@ impl Halves {
     }
 }
 
+impl StepSearch<'_> {
+    /// Takes a step that was tried again, in two halves.
+    pub(super) fn in_halves(
+        &mut self,
+        contact: &mut ViscoelasticContact,
+        step: &mut Step<'_>,
+        outlook: &StepContext,
+        mut error: TimeError,
+        excess: f64,
+    ) -> Result<Tried> {
+        let StepSearch { control, course, wasted, .. } = self;
+        let mut halves = control.halves.take().unwrap_or_else(|| Box::new(Halves::new(&contact.computation.state)));
+        let divided = halves.divide(contact, step, course.histories.first(), outlook, wasted);
+        if divided.is_err() {
+            add_work(wasted, &contact.computation);
+            halves.undo(contact);
+        }
+        control.halves = Some(halves);
+        let Divided { attempt, difference, errors } = divided?;
+        let jumped = contact.passes().is_some_and(|passes| passes.jumped);
+        error.relative = greater(error.relative, difference) * if jumped { WEIGHTS.jumped } else { 1.0 };
+        Ok(Tried { attempt, error, excess, halves: Some(errors) })
+    }
+}
+
+/// Whether a step failed because its load pulls the bodies off.
+pub(super) fn is_pulled_off(error: &Error) -> bool {
+    matches!(error, Error::Adhesion(AdhesionError::PulledOff { .. }))
+}
+
 /// The interval from now to `time` of a part of a step.
 fn until(contact: &ViscoelasticContact, whole: &Step<'_>, time: f64) -> Result<Interval> {
     let part = contact.request(time, time - contact.time(), whole.loads, whole.tolerance)?;
     Ok(Interval { interpolant: whole.interval.interpolant, ..part.interval })
 }
 
-/// Adds the convolutions and preconditioner applications of a step that does not count.
-pub(super) fn add_work(work: &mut [usize; 2], tried: &Computation) {
-    let counts = tried.trial.solution.counts;
-    *work = [work[0] + counts.convolutions, work[1] + counts.preconditioner_applications];
-}
-
 /// The greater of two errors; NaN, which is an overflow, where one is.
-pub(super) fn greater(one: f64, other: f64) -> f64 {
+fn greater(one: f64, other: f64) -> f64 {
     if one.is_nan() || one > other { one } else { other }
 }

@@ -22,6 +22,10 @@ mod extremes;
 pub(crate) mod field;
 mod fields;
 mod follow;
+#[cfg(feature = "adhesion")]
+mod halves;
+#[cfg(not(feature = "adhesion"))]
+#[path = "no_halves.rs"]
 mod halves;
 pub(crate) mod histories;
 mod in_space;

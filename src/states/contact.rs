@@ -88,8 +88,12 @@ impl StatesContact {
     /// With a temperature that changes: the material creeps in reduced time.
     #[must_use]
     pub fn with_temperature(mut self, temperature: TemperatureHistory) -> StatesContact {
-        Arc::make_mut(&mut self.scene).temperature = Some(temperature);
+        self.set_temperature(Some(&temperature));
         self
+    }
+
+    pub(super) fn set_temperature(&mut self, temperature: Option<&TemperatureHistory>) {
+        Arc::make_mut(&mut self.scene).temperature = temperature.cloned();
     }
 
     /// With steps that are linear and stay so, as

@@ -2,19 +2,17 @@
 
 use std::sync::Arc;
 
-use crate::Grid;
-use crate::adhesion::{Attraction, laws, softening};
 use crate::contact::builder::LocalGap;
 use crate::contact::builder::memory::windowed;
 use crate::contact::builder::shared_gap::SharedGap;
 use crate::contact::read::limits::Limits;
+use crate::contact::step::attraction::resolved_softening;
 use crate::contact::{Builder, Computation, Frame, Memory, Scene, Settings, State, ViscoelasticContact};
 use crate::elastic::ElasticContact;
 use crate::equilibrium::ground::check_bodies;
 use crate::equilibrium::indenter::even_axes_of;
 use crate::equilibrium::{Ground, Indenter, Region};
-use crate::error::{AdhesionError, Error, Result, Special, coverage};
-use crate::error::{length, or_failure_of, positive};
+use crate::error::{Error, Result, Special, coverage};
 use crate::geometry::{Gap, Missed};
 use crate::hereditary::History;
 use crate::parallel::{Ranks, Rows};
@@ -236,43 +234,6 @@ fn assemble(
     let attracts = scene.ground.attraction.is_some();
     let computation = Computation::new(&scene, State::at_rest(indenter, region, history, attracts));
     ViscoelasticContact::new(scene, computation, missed)
-}
-
-/// Fewer cells in the zone of an attraction are refused.
-const LEAST_ZONE: f64 = 2.0;
-
-/// A zone shorter by rounding is not refused.
-const ROUNDING: f64 = 1e-9;
-
-/// The length of the zone in which an attraction of this [`softening`] acts at the edge of a contact, over the longer
-/// side of a cell. The pull-off force errs by this figure alike for all laws (docs/accuracy.md).
-pub(in crate::contact) fn cells_in_zone(softening: f64, compliance: f64, grid: &Grid) -> f64 {
-    1.0 / (longer_side(grid) * softening * compliance)
-}
-
-/// The longer side of a cell, of the sides along which there are several cells: a line contact is the same along its
-/// one cell.
-fn longer_side(grid: &Grid) -> f64 {
-    let sides = grid.spacing().into_iter().zip(grid.cells()).filter(|(_, cells)| *cells > 1);
-    sides.map(|(side, _)| side).reduce(f64::max).unwrap_or(grid.spacing()[0])
-}
-
-/// The slope at which a law softens. Rejects a law that is no attraction, and a mesh on which even the elastic
-/// response has too short a zone.
-fn resolved_softening(law: &dyn Attraction, material: &Material, grid: &Grid) -> Result<f64> {
-    let of_law = || {
-        positive("work of separation", law.work())?;
-        length("range of the attraction", law.range())?;
-        laws::usable(law).map_err(AdhesionError::Law)?;
-        Ok(softening(law))
-    };
-    let softening = or_failure_of(|| law.failure(), of_law)?;
-    let cells = cells_in_zone(softening, material.glassy_compliance()?, grid);
-    if cells >= LEAST_ZONE * (1.0 - ROUNDING) {
-        return Ok(softening);
-    }
-    let (spacing, range) = (longer_side(grid) * cells / LEAST_ZONE, law.range() * (LEAST_ZONE / cells).sqrt());
-    Err(AdhesionError::ZoneNotResolved { cells, least: LEAST_ZONE, spacing, range }.into())
 }
 
 /// The history of bodies of `material` in a frame, on no cells yet.

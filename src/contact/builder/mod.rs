@@ -8,7 +8,7 @@ use std::ops::{Range, RangeInclusive};
 use std::sync::Arc;
 
 use crate::Grid;
-use crate::adhesion::Attraction;
+use crate::attraction::Attraction;
 use crate::contact::{Settings, ViscoelasticContact};
 use crate::error::Result;
 use crate::geometry::{Geometry, Waves, evaluate};
@@ -163,41 +163,6 @@ impl Builder {
     /// A step fails where the temperature is outside the range of the law.
     pub fn temperature(self, history: TemperatureHistory) -> Builder {
         Builder { temperature: Some(history), ..self }
-    }
-
-    /// The attraction between the surfaces: loads may then pull, and hold until the bodies separate
-    /// ([`adhesion`](crate::adhesion)). A scene without one costs nothing more.
-    ///
-    /// [`ViscoelasticContact::pressure`] is the pressure of the wall, [`Fields::traction_into`](crate::fields::Fields::traction_into) the net traction, which carries
-    /// the force and displaces the bodies. The whole grid is computed, [`Settings::window`] does not count. A contact
-    /// that tries to come off under a given force fails with
-    /// [`AdhesionError::PulledOff`](crate::adhesion::AdhesionError::PulledOff); under a given approach or a spring it
-    /// comes off within a step.
-    ///
-    /// The mesh must resolve the zone in which the attraction acts, of the length E* ρ²/w, or E* over the steepest
-    /// slope of the law if that is less: with 4 cells in it the pull-off force of a sphere errs by up to 0.5 %, with
-    /// 3 by up to 2.5 %, with 2 by up to 10 %. Below 4, at the modulus that the body has reached, steps warn
-    /// ([`Warnings::COARSE_ZONE`](crate::contact::Warnings::COARSE_ZONE)); below 2, at the modulus at once, `build`
-    /// fails. A longer range at the same work of separation needs fewer cells.
-    ///
-    /// ```
-    /// use viscocontact::adhesion::{ExponentialAttraction, tabor_number};
-    /// use viscocontact::prelude::*;
-    ///
-    /// let law = ExponentialAttraction::new(0.05, 2.0e-6)?;
-    /// assert!(tabor_number(&law, 1.0e-3, 1.0e5)? > 0.5);
-    /// let mut contact = ViscoelasticContact::builder(Grid::square(64, 0.3e-3)?)
-    ///     .geometry(&Sphere::new(1.0e-3)?)
-    ///     .material(Material::incompressible(Zener::new(2.5e5, 5.0e4, 5.0e4)?))
-    ///     .attraction(law)
-    ///     .build()?;
-    /// contact.step(0.1, Load::force(0.0))?; // no load, and yet in contact
-    /// assert!(contact.contact_cells() > 0 && contact.force().abs() < 1e-12);
-    /// assert!(contact.step(0.1, Load::force(-20.0e-6))?.force < 0.0);
-    /// # Ok::<(), viscocontact::Error>(())
-    /// ```
-    pub fn attraction(self, law: impl Attraction + 'static) -> Builder {
-        Builder { attraction: Some(Arc::new(law)), ..self }
     }
 
     /// An influence kernel, or an [`Arc`] of one that other contacts on the same grid share; without one,

@@ -1,7 +1,6 @@
 //! Read-only accessors.
 
 use crate::Grid;
-use crate::contact::step::attraction::PassReport;
 use crate::contact::{Settings, ViscoelasticContact};
 use crate::error::{Result, coverage};
 use crate::load::Load;
@@ -73,11 +72,6 @@ impl ViscoelasticContact {
     /// [`Fields::contact_cells`](crate::fields::Fields::contact_cells), the number of cells in contact.
     pub fn contact_cells(&self) -> usize {
         self.fields().contact_cells()
-    }
-
-    /// How the passes of the step tried last went; `None` without attraction, and before the first step.
-    pub fn passes(&self) -> Option<PassReport> {
-        self.computation.attracted.as_ref().map(|passes| passes.report)
     }
 
     /// Refuses what this contact does not cover.
