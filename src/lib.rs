@@ -119,6 +119,7 @@
 //! | `energies` | [`contact::EnergyBalance`] |
 //! | `laws` | [`laws`]: laws for shapes, rheologies and histories, `proptest` strategies |
 //! | `layers` | [`Layer`] |
+//! | `observe` | [`observe`]: patches, profiles, distributions, stiffness, error due to the mesh |
 //! | `output` | [`output`]: CSV, VTK |
 //! | `plot` | [`plot`]: PNG, SVG and GIF |
 //! | `sliding` | [`sliding`] |
@@ -182,7 +183,11 @@ pub mod load;
 mod memory;
 pub mod motion;
 pub mod numeric;
+#[cfg(feature = "observe")]
 pub mod observe;
+#[cfg(not(feature = "observe"))]
+#[path = "no_observe.rs"]
+mod observe;
 #[cfg(feature = "output")]
 pub mod output;
 pub mod parallel;

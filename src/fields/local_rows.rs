@@ -6,7 +6,7 @@ use crate::equilibrium::Held;
 use crate::error::{Result, count_within, exact_length};
 use crate::fields::Fields;
 use crate::parallel::Rows;
-use crate::{Axis, sum};
+use crate::sum;
 
 impl Fields<'_> {
     /// The rows (indices along x1) that [`pressure`](Fields::pressure) and all other fields hold: all of the grid,
@@ -51,14 +51,6 @@ impl Fields<'_> {
             let brought = self.bring(field, Some(to), 0..n1, 0..n2)?;
             Ok(brought.map(|whole| (0..n1).flat_map(|row| whole.row(row)).copied().collect()))
         })
-    }
-
-    /// The values of a field along a line of cells, of all ranks.
-    pub(super) fn line_of(&self, field: &[f64], along: Axis, line: usize) -> Result<Vec<f64>> {
-        let [n1, n2] = self.grid().cells();
-        let [rows, columns] = if along == Axis::X1 { [0..n1, line..line + 1] } else { [line..line + 1, 0..n2] };
-        let brought = self.bring(field, None, rows.clone(), columns)?;
-        Ok(brought.iter().flat_map(|line| rows.clone().flat_map(|row| line.row(row))).copied().collect())
     }
 
     /// The rows of the whole grid that fields of a rank hold.

@@ -1,10 +1,12 @@
 //! What is read of a contact of any kind: pressure, gap, displacement, motions, and what follows from them.
 
+pub(crate) mod area;
 mod body;
 mod brought;
 mod kept;
 mod lateral;
 mod local_rows;
+#[cfg(feature = "observe")]
 pub(crate) mod observations;
 mod shared_area;
 #[cfg(feature = "stress")]
