@@ -115,6 +115,7 @@
 //! | `adhesion` | [`adhesion`], [`contact::Builder::attraction`] |
 //! | `analytic` | [`analytic`] |
 //! | `checkpoint` | save and resume: [`ViscoelasticContact::save`], [`run::Run::autosave_to`] |
+//! | `contacts` | runs of contacts of your own: [`run::Contact`] |
 //! | `data` | [`rheology::Measurements`], [`rheology::MasterCurve`], [`rheology::library`], [`numeric::least_squares`] |
 //! | `energies` | [`contact::EnergyBalance`] |
 //! | `laws` | [`laws`]: laws for shapes, rheologies and histories, `proptest` strategies |
