@@ -120,6 +120,7 @@
 //! | `energies` | [`contact::EnergyBalance`] |
 //! | `laws` | [`laws`]: laws for shapes, rheologies and histories, `proptest` strategies |
 //! | `layers` | [`Layer`] |
+//! | `motion` | [`motion`]: indenters that move along the surface, or over the bodies |
 //! | `observe` | [`observe`]: patches, profiles, distributions, stiffness, error due to the mesh |
 //! | `output` | [`output`]: CSV, VTK |
 //! | `plot` | [`plot`]: PNG, SVG and GIF |
@@ -182,6 +183,7 @@ pub mod laws;
 mod linalg;
 pub mod load;
 mod memory;
+#[cfg(feature = "motion")]
 pub mod motion;
 pub mod numeric;
 #[cfg(feature = "observe")]
@@ -254,6 +256,7 @@ pub mod prelude {
         Cone, Cylinder, Ellipsoid, FlatPunch, FnGeometry, Geometry, Repeated, Shifted, Sphere, Wavy,
     };
     pub use crate::load::{FnHistory, Load, LoadHistory, Periodic, PiecewiseLinear, Ramp, Sinusoid, StepLoad, Tilt};
+    #[cfg(feature = "motion")]
     pub use crate::motion::{FnPath, Straight, Travel};
     #[cfg(feature = "output")]
     pub use crate::output::{CsvHistory, Earlier, Field, FrameSeries, Metadata};

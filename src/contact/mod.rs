@@ -17,10 +17,11 @@
 //! | what does a contact do for ranks? | `distributed` |
 
 // the documentation lists methods in the order of these modules: methods that drive a contact, then its results
-mod builder;
+pub(crate) mod builder;
 
 pub(crate) mod step;
 
+#[cfg(feature = "motion")]
 pub(crate) mod moving;
 
 mod read;
@@ -38,7 +39,9 @@ pub use crate::error::CheckpointError;
 pub use crate::error::StepError;
 pub use crate::fields::BodyState;
 pub use builder::Builder;
+
 pub use builder::memory::Memory;
+#[cfg(feature = "motion")]
 pub use moving::along_path::TravelReport;
 #[cfg(feature = "energies")]
 pub use read::energies::{Energies, EnergyBalance};

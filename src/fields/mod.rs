@@ -4,6 +4,7 @@ pub(crate) mod area;
 mod body;
 mod brought;
 mod kept;
+#[cfg(feature = "motion")]
 mod lateral;
 mod local_rows;
 #[cfg(feature = "observe")]

@@ -22,10 +22,9 @@
 //! ([`InfluenceKernel::periodic`](crate::InfluenceKernel::periodic)) and a periodic shape
 //! ([`Repeated`](crate::geometry::Repeated)).
 
-mod counter;
 mod path;
 mod travel;
 
-pub use counter::CounterMotion;
+pub use crate::contact::builder::counter_motion::CounterMotion;
 pub use path::{FnPath, Path, Straight};
 pub use travel::Travel;

@@ -105,6 +105,13 @@ fn on_base(scene: &Scene, creep: &Creep, base: &Material) -> Result<LayerOnBase>
 }
 
 impl Builder {
+    /// Whether a creeping counter-body slides or rolls in a steady motion:
+    /// [`Builder::build_sliding`] needs to know. Steps do not, in which bodies that both creep roll
+    /// ([`motion`](crate::motion)).
+    pub fn counter_motion(self, motion: CounterMotion) -> Builder {
+        Builder { counter_motion: Some(motion), ..self }
+    }
+
     /// A contact in steady motion, for [`SteadySliding::at`]: it takes the parts of
     /// [`Builder::build`]. All fields take the whole grid.
     ///

@@ -1,6 +1,7 @@
 //! The parts that a contact is built from.
 
 pub(in crate::contact) mod build;
+pub(crate) mod counter_motion;
 pub(in crate::contact) mod memory;
 mod shared_gap;
 
@@ -14,9 +15,9 @@ use crate::error::Result;
 use crate::geometry::{Geometry, Waves, evaluate};
 use crate::kernel::InfluenceKernel;
 use crate::load::LoadHistory;
-use crate::motion::CounterMotion;
 use crate::parallel::{Ranks, Rows};
 use crate::rheology::{Material, TemperatureHistory};
+use counter_motion::CounterMotion;
 
 /// Ratio of the shortest time of a run to the shortest time between corners of its load.
 const SHORTEST_PART: f64 = 1e-6;
@@ -98,13 +99,6 @@ impl Builder {
     /// deform: u is the sum of their displacements, and C(t) the sum of their compliances.
     pub fn counter_body(self, material: Material) -> Builder {
         Builder { counter_body: Some(material), ..self }
-    }
-
-    /// Whether a creeping counter-body slides or rolls in a steady motion:
-    /// [`Builder::build_sliding`] needs to know. Steps do not, in which bodies that both creep roll
-    /// ([`motion`](crate::motion)).
-    pub fn counter_motion(self, motion: CounterMotion) -> Builder {
-        Builder { counter_motion: Some(motion), ..self }
     }
 
     /// The loading times \[s\] over which the material is needed, from the shortest that matters to the end of the

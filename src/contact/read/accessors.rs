@@ -74,6 +74,12 @@ impl ViscoelasticContact {
         self.fields().contact_cells()
     }
 
+    /// Force and moments of the first body, and the parts of its motion on which they do work.
+    pub(in crate::contact) fn load_and_motion(&self) -> [[f64; 3]; 2] {
+        let ([moment1, moment2], [tilt1, tilt2]) = (self.fields().moment(), self.tilt());
+        [[self.force(), moment1, moment2], [self.approach(), tilt1, tilt2]]
+    }
+
     /// Refuses what this contact does not cover.
     pub(crate) fn covers(&self, case: coverage::Case) -> Result<()> {
         self.fields().covers(case)
