@@ -40,23 +40,6 @@ impl InfluenceKernel {
         }
     }
 
-    /// The kernel of the same body on a grid of other cells and the same periods; `None` of coefficients of a user,
-    /// which belong to cells.
-    pub(crate) fn on_other_cells(&self, grid: &Grid) -> Option<Result<InfluenceKernel>> {
-        let along = self.periodic.iter().position(|&periodic| periodic).map(|axis| Axis::BOTH[axis]);
-        Some(match (self.body, self.periodic, along, self.datum) {
-            (Body::HalfSpace, [true, true], ..) => InfluenceKernel::periodic(grid),
-            (Body::HalfSpace, _, Some(along), Some(datum)) => InfluenceKernel::periodic_along(grid, along, datum),
-            (Body::HalfSpace, ..) => InfluenceKernel::half_space(grid),
-            (Body::Layer(layer), periodic, along, datum) => layer.on_cells(grid, periodic, along, datum),
-            (Body::User, [true, true], ..) => {
-                let response = Arc::clone(&self.response);
-                Ok(InfluenceKernel::new(grid, Body::User, [true; 2], move |k| response(k)))
-            }
-            (Body::User, ..) => return None,
-        })
-    }
-
     /// The kernel of an elastic half-space (Eq. 6 of the [paper](crate::paper)): Love's coefficients, right to 1e-14
     /// at every distance and for cells of any aspect ratio up to 1000, zero-padded so that the convolution is linear.
     ///

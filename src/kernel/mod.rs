@@ -33,6 +33,8 @@ mod lines;
 mod love;
 #[cfg(feature = "adhesion")]
 mod near;
+#[cfg(feature = "observe")]
+mod other_cells;
 #[cfg(feature = "sliding")]
 mod rows;
 mod transform;
@@ -113,14 +115,6 @@ struct Facts {
 /// Buffers of [`InfluenceKernel::convolve`], made by [`InfluenceKernel::workspace`].
 #[derive(Debug, Clone)]
 pub struct Workspace(pub(crate) TransformWorkspace);
-
-impl Workspace {
-    /// Swaps the buffers, but for those between the passes of a transform, which remain here.
-    pub(crate) fn swap(&mut self, other: &mut Workspace) {
-        std::mem::swap(&mut self.0, &mut other.0);
-        self.0.swap_tiles(&mut other.0);
-    }
-}
 
 /// The influence operator on a part of a grid, and on its mirror images along folded axes.
 #[derive(Debug, Clone)]
@@ -343,10 +337,5 @@ impl LocalKernel {
     /// [`InfluenceKernel::convolve`] for fields of the right length.
     pub(crate) fn apply(&self, pressure: &[f64], displacement: &mut [f64], work: &mut Workspace) {
         self.operator.apply(pressure, displacement, &mut work.0);
-    }
-
-    /// [`LocalKernel::apply`] in place.
-    pub(crate) fn apply_in_place(&self, field: &mut [f64], work: &mut Workspace) {
-        self.operator.apply_in_place(field, &mut work.0);
     }
 }

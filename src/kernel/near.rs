@@ -50,6 +50,14 @@ impl InfluenceKernel {
     }
 }
 
+impl Workspace {
+    /// Swaps the buffers, but for those between the passes of a transform, which remain here.
+    pub(crate) fn swap(&mut self, other: &mut Workspace) {
+        std::mem::swap(&mut self.0, &mut other.0);
+        self.0.swap_tiles(&mut other.0);
+    }
+}
+
 impl LocalKernel {
     /// The inverse of a kernel that is periodic along both axes, or of the near field.
     pub(crate) fn period_inverse(&self) -> PeriodInverse {
@@ -76,6 +84,11 @@ impl LocalKernel {
         let operator = SpectralOperator::new(layout, Shares::new(&layout, &self.rows), symbol);
         let work = Workspace(operator.workspace_sharing(&self.operator));
         Some((LocalKernel { operator: Arc::new(operator), ..self.clone() }, work))
+    }
+
+    /// [`LocalKernel::apply`] in place.
+    pub(crate) fn apply_in_place(&self, field: &mut [f64], work: &mut Workspace) {
+        self.operator.apply_in_place(field, &mut work.0);
     }
 }
 

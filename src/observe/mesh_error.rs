@@ -5,9 +5,11 @@ use crate::equilibrium::Edge;
 use crate::error::{Error, Result, StepError, coverage};
 use crate::fields::Fields;
 use crate::fields::area::PressedCells;
+use crate::geometry::Gap;
 use crate::load::Load;
 use crate::observe::MeshError;
 use crate::observe::grid_convergence::{OfMesh, SINGULAR, SMOOTH, off_means};
+use crate::solver::RigidMotion;
 use crate::{Grid, sum};
 
 impl Fields<'_> {
@@ -215,4 +217,21 @@ fn difference(coarse: &Coarse, fine: &[f64], grid: &Grid, periodic: [bool; 2]) -
         all.map(|((i, w1), (j, w2))| w1 * w2 * fine.pressure_at([*i, *j])).sum::<f64>()
     };
     off_means(&coarse.pressure, (0..coarse.pressure.len()).map(mean))
+}
+
+impl<'a> Fields<'a> {
+    /// The motion of a body.
+    pub(crate) fn motion(&self, body: usize) -> RigidMotion {
+        self.held.current.motions[body]
+    }
+
+    /// The gap before the bodies deform.
+    fn initial_gap(&self) -> &'a Gap {
+        self.held.indenter.gap()
+    }
+
+    /// Whether the approach of a body is given.
+    fn is_by_approach(&self, body: usize) -> bool {
+        matches!(self.held.loads[body], Load::Approach { .. })
+    }
 }

@@ -8,7 +8,6 @@ use crate::contact::builder::shared_gap::SharedGap;
 use crate::contact::read::limits::Limits;
 use crate::contact::step::attraction::resolved_softening;
 use crate::contact::{Builder, Computation, Frame, Memory, Scene, Settings, State, ViscoelasticContact};
-use crate::elastic::ElasticContact;
 use crate::equilibrium::ground::check_bodies;
 use crate::equilibrium::indenter::even_axes_of;
 use crate::equilibrium::{Ground, Indenter, Region};
@@ -65,19 +64,8 @@ impl Builder {
         })
     }
 
-    /// The constants of a contact in one process, its indenter, and what the grid misses of the waves of its shapes.
-    pub(crate) fn parts(mut self) -> Result<(Scene, Indenter, Missed)> {
-        self.validate()?;
-        let gaps: Vec<_> = std::mem::take(&mut self.gaps).into_iter().map(|(_, gap)| gap).collect::<Result<_>>()?;
-        let bodies = gaps.len();
-        let indenter = Indenter::new(Gap::new(gaps, &self.grid)?, bodies);
-        let (scene, _) = self.scene(bodies)?;
-        let missed = self.missed(&scene);
-        Ok((scene, indenter, missed))
-    }
-
     /// What the grid misses of the waves of the shapes.
-    fn missed(&self, scene: &Scene) -> Missed {
+    pub(crate) fn missed(&self, scene: &Scene) -> Missed {
         Missed::of(&self.waves, &self.grid, scene.ground.kernel.periodic_axes())
     }
 
@@ -161,7 +149,7 @@ impl Builder {
     }
 
     /// Rejects settings out of range, and no rigid body or too many.
-    fn validate(&self) -> Result<()> {
+    pub(crate) fn validate(&self) -> Result<()> {
         self.settings.validate()?;
         check_bodies(self.gaps.len())?;
         let specials = [
@@ -172,7 +160,7 @@ impl Builder {
     }
 
     /// The scene with so many rigid bodies, and the history, on no cells yet.
-    pub(super) fn scene(&self, bodies: usize) -> Result<(Scene, History)> {
+    pub(crate) fn scene(&self, bodies: usize) -> Result<(Scene, History)> {
         let mut material = self.material.clone().ok_or(Error::Missing { part: "material" })?;
         if let Some(other) = self.counter_body.clone() {
             material = material.against(other);
@@ -196,21 +184,6 @@ impl Builder {
         let scene =
             Scene { creep, ground, limits: Limits::of(&material), material, temperature: self.temperature.clone() };
         Ok((scene, history))
-    }
-}
-
-impl ViscoelasticContact {
-    /// An elastic contact of this compliance with the same rigid bodies, solved to `tolerance` on the whole grid, but
-    /// for mirror images.
-    ///
-    /// # Errors
-    /// If there is no memory for it.
-    pub(crate) fn elastic(&self, compliance: f64, tolerance: f64) -> Result<ElasticContact> {
-        let own = &self.scene.ground;
-        let settings = own.settings.with_tolerance(tolerance).with_window(false);
-        let ground = Ground { settings, attraction: None, softening: 0.0, ..own.clone() };
-        let indenter = Arc::clone(&self.computation.state.held.indenter);
-        ElasticContact::new(Arc::new(ground), compliance, indenter, self.missed)
     }
 }
 
