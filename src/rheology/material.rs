@@ -2,11 +2,8 @@ use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use crate::UserError;
-use crate::error::{Error, KernelError, MaterialError, Result, poisson_ratio, positive, within};
+use crate::error::{Error, MaterialError, Result, poisson_ratio, positive, within};
 use crate::rheology::{CreepSpectrum, FitReport, RelaxationSpectrum, Rheology, Tension, is_known, may_follow};
-
-/// Mismatch of two Poisson's ratios that is not rounding.
-const SAME_POISSON: f64 = 1e-9;
 
 /// A rheology in shear and the bulk response: together they give the contact creep compliance C(t),
 /// with C = 1/E* = (1 − ν)/2G for an elastic body.
@@ -243,24 +240,6 @@ impl Material {
             Volume::Proportional { poisson, .. } => Some(*poisson),
             Volume::Bulk(_, _, Compressibility { last, terms }) => terms.is_empty().then_some(0.5 * (1.0 - last)),
         })
-    }
-
-    /// Rejects a layer of the Poisson's ratio `layer` that is not that of this material.
-    pub(crate) fn check_ratio_of(&self, layer: f64) -> Result<()> {
-        let refused = |what| Err(Error::from(KernelError::LayerMaterial { layer, what }));
-        let ratios: Vec<_> = self.poisson_ratios().collect();
-        match ratios[..] {
-            [Some(nu)] if (nu - layer).abs() <= SAME_POISSON => Ok(()),
-            // to the digits that were given
-            [Some(nu)] => refused(format!(
-                "the material has the constant ratio {}: give both the same, a layer after its thickness",
-                (nu * 1e9).round() / 1e9
-            )),
-            [None] => {
-                refused("that of a material with an elastic bulk rises in time: take one of constant ratio".into())
-            }
-            _ => refused("a counter body deforms, too, as a half-space and in a time of its own: make it rigid".into()),
-        }
     }
 
     /// 1 − 2ν of a body, `None` if that body is absent.

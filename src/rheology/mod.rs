@@ -79,6 +79,7 @@ mod maxwell;
 mod mittag_leffler;
 mod own_series;
 mod power_law;
+mod ratio;
 mod series;
 mod slow_creep;
 mod spectrum;

@@ -2,7 +2,7 @@
 
 use crate::contact::step::Attempt;
 use crate::contact::step::error_in_time::error_in_time;
-use crate::contact::{Computation, Step, StepReport, ViscoelasticContact};
+use crate::contact::{Step, StepReport, ViscoelasticContact};
 use crate::error::{Error, ErrorKind, Result};
 use crate::events;
 use crate::hereditary::{StepContext, TimeError};
@@ -134,7 +134,7 @@ impl StepSearch<'_> {
         let StepSearch { control, wasted, .. } = self;
         let tried = contact.attempt(step);
         let ViscoelasticContact { scene, computation, .. } = &*contact;
-        let attempt = tried.inspect_err(|_| add_work(wasted, computation))?;
+        let attempt = tried.inspect_err(|_| computation.add_work(wasted))?;
         let computed = attempt.computation(computation);
         let mut error = error_in_time(scene, computed, step, outlook);
         computed.state.held.region.rows().intact()?;
@@ -178,7 +178,7 @@ impl StepSearch<'_> {
             track.is_driven && !track.is_apart && !attracts && !presses(scene, computed, body)
         };
         if let Some(top) = control.first_top(course.histories, parts) {
-            add_work(wasted, computed);
+            computed.add_work(wasted);
             (self.stop, control.rejected) = (top, control.rejected + 1);
             return None;
         }
@@ -196,7 +196,7 @@ impl StepSearch<'_> {
         }
         events::rejected(self.tried, length, error.relative, control.tolerance);
         control.rejected += 1;
-        add_work(wasted, computed);
+        computed.add_work(wasted);
         if let Some(divided) = control.halves.as_ref().filter(|_| tried.halves.is_some()) {
             divided.undo(contact);
         }
@@ -220,10 +220,4 @@ impl StepSearch<'_> {
         self.control.accept(step.interval.reduced, step.loads, self.dt, is_last, proposal);
         contact.accept(attempt, step, error)
     }
-}
-
-/// Adds the convolutions and preconditioner applications of a step that does not count.
-pub(super) fn add_work(work: &mut [usize; 2], tried: &Computation) {
-    let counts = tried.trial.solution.counts;
-    *work = [work[0] + counts.convolutions, work[1] + counts.preconditioner_applications];
 }

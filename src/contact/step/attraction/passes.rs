@@ -1,6 +1,5 @@
 //! What a step of surfaces that attract each other works in, and how it went.
 
-use crate::contact::ViscoelasticContact;
 use crate::contact::state::State;
 use crate::equilibrium::window::Window;
 use crate::kernel::{LocalKernel, PeriodInverse, Workspace};
@@ -108,13 +107,6 @@ impl PassReport {
             bend: self.bend,
             beyond_edge: self.beyond_edge,
         }
-    }
-}
-
-impl ViscoelasticContact {
-    /// How the passes of the step tried last went; `None` without attraction, and before the first step.
-    pub fn passes(&self) -> Option<PassReport> {
-        self.computation.attracted.as_ref().map(|passes| passes.report)
     }
 }
 

@@ -5,13 +5,14 @@
 //! halves, which are kept. Their error is the whole difference where the rule has the order one, the least that is
 //! left there, and a third of it at the order two of most steps. Half of it counts.
 
+mod search;
+
 use crate::contact::step::Attempt;
 use crate::contact::step::error_in_time::{error_in_time, least_sizes};
 use crate::contact::{Computation, State, Step, ViscoelasticContact};
 use crate::error::{AdhesionError, Error, Result};
 use crate::hereditary::{Interval, StepContext, TimeError, WEIGHTS};
 use crate::load::LoadHistory;
-use crate::run::adaptive_step::{StepSearch, Tried, add_work};
 
 /// The step that was divided last.
 #[derive(Debug, Clone)]
@@ -49,7 +50,7 @@ impl Halves {
         wasted: &mut [usize; 2],
     ) -> Result<Divided> {
         self.keep(&contact.computation);
-        add_work(wasted, &contact.computation);
+        contact.computation.add_work(wasted);
         let passes = |contact: &ViscoelasticContact| contact.passes().unwrap_or_default();
         let (time, from, of_whole) = (step.interval.time, contact.time(), passes(contact));
         self.middle = from + 0.5 * (time - from);
@@ -58,7 +59,7 @@ impl Halves {
         let first = Step { interval: until(contact, step, self.middle)?, ..first };
         let attempt = contact.attempt(&first)?;
         let of_first = error_in_time(&contact.scene, &contact.computation, &first, outlook);
-        add_work(wasted, &contact.computation);
+        contact.computation.add_work(wasted);
         let of_first_half = passes(contact);
         contact.adopt(attempt, first, of_first.sizes)?;
         step.interval = until(contact, step, time)?;
@@ -104,31 +105,6 @@ impl Halves {
         let least = least_sizes(&self.start, outlook);
         let over = |off: f64, of: f64, least: f64| if off != 0.0 { off / of.max(least * weight) } else { 0.0 };
         greater(over(off_u, of_u, least[0]), over(off_v, of_v, least[1]))
-    }
-}
-
-impl StepSearch<'_> {
-    /// Takes a step that was tried again, in two halves.
-    pub(super) fn in_halves(
-        &mut self,
-        contact: &mut ViscoelasticContact,
-        step: &mut Step<'_>,
-        outlook: &StepContext,
-        mut error: TimeError,
-        excess: f64,
-    ) -> Result<Tried> {
-        let StepSearch { control, course, wasted, .. } = self;
-        let mut halves = control.halves.take().unwrap_or_else(|| Box::new(Halves::new(&contact.computation.state)));
-        let divided = halves.divide(contact, step, course.histories.first(), outlook, wasted);
-        if divided.is_err() {
-            add_work(wasted, &contact.computation);
-            halves.undo(contact);
-        }
-        control.halves = Some(halves);
-        let Divided { attempt, difference, errors } = divided?;
-        let jumped = contact.passes().is_some_and(|passes| passes.jumped);
-        error.relative = greater(error.relative, difference) * if jumped { WEIGHTS.jumped } else { 1.0 };
-        Ok(Tried { attempt, error, excess, halves: Some(errors) })
     }
 }
 
