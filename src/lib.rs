@@ -183,14 +183,10 @@ pub mod laws;
 mod linalg;
 pub mod load;
 mod memory;
-#[cfg(feature = "motion")]
 pub mod motion;
 pub mod numeric;
 #[cfg(feature = "observe")]
 pub mod observe;
-#[cfg(not(feature = "observe"))]
-#[path = "no_observe.rs"]
-mod observe;
 #[cfg(feature = "output")]
 pub mod output;
 pub mod parallel;

@@ -17,7 +17,7 @@
 //! | what does a contact do for ranks? | `distributed` |
 
 // the documentation lists methods in the order of these modules: methods that drive a contact, then its results
-pub(crate) mod builder;
+mod builder;
 
 pub(crate) mod step;
 

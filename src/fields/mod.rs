@@ -9,11 +9,10 @@ mod kept;
 #[cfg(feature = "motion")]
 mod lateral;
 mod local_rows;
-#[cfg(feature = "observe")]
-pub(crate) mod observations;
+pub(crate) mod mesh_error;
+#[cfg(not(feature = "observe"))]
+mod no_observe;
 mod shared_area;
-#[cfg(feature = "stress")]
-mod stress;
 pub(crate) mod view;
 
 use std::fmt;

@@ -22,9 +22,14 @@
 //! ([`InfluenceKernel::periodic`](crate::InfluenceKernel::periodic)) and a periodic shape
 //! ([`Repeated`](crate::geometry::Repeated)).
 
+mod counter;
+#[cfg(feature = "motion")]
 mod path;
+#[cfg(feature = "motion")]
 mod travel;
 
-pub use crate::contact::builder::counter_motion::CounterMotion;
+pub use counter::CounterMotion;
+#[cfg(feature = "motion")]
 pub use path::{FnPath, Path, Straight};
+#[cfg(feature = "motion")]
 pub use travel::Travel;

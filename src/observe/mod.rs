@@ -17,12 +17,13 @@ mod asymmetry;
 mod distribution;
 pub(crate) mod grid_convergence;
 mod mesh_error;
+mod of_fields;
 mod patches;
 pub(crate) mod profile;
 #[cfg(feature = "stress")]
 mod stress;
 
-pub use crate::run::mesh_error::MeshError;
+pub use crate::fields::mesh_error::MeshError;
 pub use asymmetry::Asymmetry;
 pub use distribution::Distribution;
 pub use patches::{Patch, Patches};

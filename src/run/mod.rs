@@ -30,7 +30,6 @@ mod halves;
 mod halves;
 pub(crate) mod histories;
 mod in_space;
-pub(crate) mod mesh_error;
 mod outlook;
 pub(crate) mod passage;
 mod past_steps;
@@ -49,7 +48,6 @@ pub use control::FieldReport;
 pub use error_budget::ErrorBudget;
 pub use event::{Crossing, Event};
 pub use follow::Run;
-pub(crate) use mesh_error::MeshError;
 pub use progress::{RunProgress, Stepping};
 pub use samples::Sample;
 

@@ -1,7 +1,6 @@
 //! The parts that a contact is built from.
 
 pub(in crate::contact) mod build;
-pub(crate) mod counter_motion;
 pub(in crate::contact) mod memory;
 mod shared_gap;
 
@@ -15,9 +14,9 @@ use crate::error::Result;
 use crate::geometry::{Geometry, Waves, evaluate};
 use crate::kernel::InfluenceKernel;
 use crate::load::LoadHistory;
+use crate::motion::CounterMotion;
 use crate::parallel::{Ranks, Rows};
 use crate::rheology::{Material, TemperatureHistory};
-use counter_motion::CounterMotion;
 
 /// Ratio of the shortest time of a run to the shortest time between corners of its load.
 const SHORTEST_PART: f64 = 1e-6;

@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::fields::Fields;
-use crate::run::MeshError;
+use crate::fields::mesh_error::MeshError;
 
 impl Fields<'_> {
     /// Not measured.
