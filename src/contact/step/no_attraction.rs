@@ -15,7 +15,9 @@ use crate::solver::{Freedom, Stop};
 pub(crate) enum Attracted {}
 
 impl Attracted {
-    pub(in crate::contact) const BYTES_PER_CELL: usize = 0;
+    pub(in crate::contact) fn bytes_per_cell() -> usize {
+        0
+    }
 
     pub(in crate::contact) fn weights(&self) -> [&[f64]; 3] {
         match *self {}

@@ -112,7 +112,9 @@ impl PassReport {
 
 impl Attracted {
     /// Bytes for each cell, with s of the trial.
-    pub(in crate::contact) const BYTES_PER_CELL: usize = 8 * 7;
+    pub(in crate::contact) fn bytes_per_cell() -> usize {
+        8 * 7
+    }
 
     pub(super) fn new(cells: usize, kernel: &LocalKernel) -> Attracted {
         let field = || vec![0.0; cells];
