@@ -17,10 +17,14 @@ pub(crate) mod control;
 #[cfg(feature = "contacts")]
 pub(crate) mod doubled;
 mod error_budget;
+mod errors;
 mod event;
 mod events;
 mod extremes;
-pub(crate) mod field;
+#[cfg(feature = "states")]
+pub(crate) mod fields;
+#[cfg(not(feature = "states"))]
+#[path = "no_fields.rs"]
 mod fields;
 mod follow;
 #[cfg(feature = "adhesion")]
