@@ -85,6 +85,7 @@ mod tests {
     use approx::assert_abs_diff_eq;
 
     use super::*;
+    use crate::quadrature::GaussLegendre;
 
     /// ln |s| over the cell by quadrature in pieces that shrink towards the load.
     fn by_quadrature(side: f64, i: usize, f: impl Fn(f64) -> f64) -> f64 {
