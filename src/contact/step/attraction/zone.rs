@@ -12,11 +12,12 @@ impl Builder {
     /// The attraction between the surfaces: loads may then pull, and hold until the bodies separate
     /// ([`adhesion`](crate::adhesion)). A scene without one costs nothing more.
     ///
-    /// [`ViscoelasticContact::pressure`] is the pressure of the wall, [`Fields::traction_into`](crate::fields::Fields::traction_into) the net traction, which carries
-    /// the force and displaces the bodies. The whole grid is computed, [`Settings::window`] does not count. A contact
-    /// that tries to come off under a given force fails with
-    /// [`AdhesionError::PulledOff`](crate::adhesion::AdhesionError::PulledOff); under a given approach or a spring it
-    /// comes off within a step.
+    /// [`ViscoelasticContact::pressure`](crate::ViscoelasticContact::pressure) is the pressure of the wall,
+    /// [`Fields::traction_into`](crate::fields::Fields::traction_into) the net traction, which carries the force
+    /// and displaces the bodies. The whole grid is computed, [`Settings::window`](crate::contact::Settings::window)
+    /// does not count. A contact that tries to come off under a given force fails with
+    /// [`AdhesionError::PulledOff`](crate::adhesion::AdhesionError::PulledOff); under a given approach or a spring
+    /// it comes off within a step.
     ///
     /// The mesh must resolve the zone in which the attraction acts, of the length E* ρ²/w, or E* over the steepest
     /// slope of the law if that is less: with 4 cells in it the pull-off force of a sphere errs by up to 0.5 %, with
