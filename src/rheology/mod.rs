@@ -119,7 +119,10 @@ pub use spectrum::{CreepSpectrum, GeneralizedKelvin, RelaxationSpectrum};
 pub use table::{Experiment, Isotherm, MasterCurve, Measurements, Units};
 #[cfg(feature = "data")]
 pub(crate) use temperature::GAS_CONSTANT;
-pub use temperature::*;
+#[cfg(not(feature = "temperature"))]
+pub(crate) use temperature::TemperatureHistory;
+#[cfg(feature = "temperature")]
+pub use temperature::{ShiftedRheology, TemperatureHistory, TimeTemperature};
 pub use tension::Tension;
 pub use zener::Zener;
 
