@@ -13,7 +13,7 @@
 //! nothing, a being the radius under the mean force, a³ = ¾ R Wm C(t); for large ones the difference is shown. The
 //! reference of the ball is the one-dimensional foundation (method of dimensionality reduction).
 //!
-//! `cargo run --release -p viscocontact --features plot,states --example cyclic_pmma`
+//! `cargo run --release -p viscocontact --features data,plot,states --example cyclic_pmma`
 
 #[path = "support/scenes/oscillation.rs"]
 mod oscillation;

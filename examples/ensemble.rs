@@ -2,7 +2,7 @@
 //! out over the threads of this machine by rayon. A run that was stopped resumes where it ended. `mpi/examples/ensemble.rs`
 //! is the same over processes of MPI.
 //!
-//! `cargo run --release -p viscocontact --features plot,states,surfaces --example ensemble`
+//! `cargo run --release -p viscocontact --features motion,plot,states,surfaces --example ensemble`
 
 mod support;
 #[path = "support/ensemble.rs"]

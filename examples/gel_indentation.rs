@@ -2,7 +2,7 @@
 //! the compliance that formulas read from it: Hertz's, for a half-space, and the series in √(Rδ)/h that are used to
 //! correct it (Dimitriadis et al., Biophys. J. 82, 2002; P. D. Garcia and R. Garcia, Biophys. J. 114, 2018).
 //!
-//! `cargo run --release -p viscocontact --features plot --example gel_indentation`
+//! `cargo run --release -p viscocontact --features layers,plot --example gel_indentation`
 
 mod support;
 

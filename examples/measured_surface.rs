@@ -4,7 +4,7 @@
 //! curved plane, with a scratch, and some points missing as an instrument leaves them. `--generate` writes it anew. Give your
 //! own with `--map`.
 //!
-//! `cargo run --release -p viscocontact --features analytic,plot,surfaces --example measured_surface`
+//! `cargo run --release -p viscocontact --features analytic,data,plot,surfaces --example measured_surface`
 
 mod support;
 

@@ -4,7 +4,7 @@
 //! which is pressed into full contact can take more work to separate than the plain ball (Guduru, J. Mech. Phys. Solids 55, 2007, for
 //! rings); a pattern that stays open has less contact, and holds less.
 //!
-//! `cargo run --release -p viscocontact --features plot --example patterned_adhesion`
+//! `cargo run --release -p viscocontact --features adhesion,plot --example patterned_adhesion`
 
 mod support;
 

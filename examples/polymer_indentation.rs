@@ -1,7 +1,7 @@
 //! PMMA under a ball for eight decades of time: published relaxation data, a force that is held, the contact growing
 //! tenfold. Twice: with a constant Poisson's ratio, for which the answer is known, and with an elastic bulk.
 //!
-//! `cargo run --release -p viscocontact --features plot --example polymer_indentation`
+//! `cargo run --release -p viscocontact --features data,plot --example polymer_indentation`
 
 mod support;
 

@@ -7,7 +7,7 @@
 //! if the work of adhesion were k w. Between both, the edge of the contact opens as fast as the body lets it: the theory of an
 //! [`OpeningEdge`](viscocontact::analytic::OpeningEdge) holds while the bulk is relaxed.
 //!
-//! `cargo run --release -p viscocontact --features analytic,plot --example pull_off`
+//! `cargo run --release -p viscocontact --features adhesion,analytic,plot --example pull_off`
 
 mod support;
 

@@ -3,7 +3,7 @@
 //! Patches of contact snap in and separate one after the other, each at a loss of energy. So an elastic body has a hysteresis too. A creeping
 //! body loses more: it relaxes while the surfaces are in contact, and is stiffer at once when they are drawn apart.
 //!
-//! `cargo run --release -p viscocontact --features plot,surfaces --example rough_adhesion`
+//! `cargo run --release -p viscocontact --features adhesion,plot,surfaces --example rough_adhesion`
 
 mod support;
 

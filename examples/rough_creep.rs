@@ -13,7 +13,7 @@
 //! p the mean pressure and h' the rms slope (Persson, J. Chem. Phys. 115, 2001, in the form of Manners & Greenwood, Wear
 //! 261, 2006). At small loads the area is κ p C / h', with κ = √(8/π) = 1.6 from this formula and about 2 in computations.
 //!
-//! `cargo run --release -p viscocontact --features plot,surfaces --example rough_creep`
+//! `cargo run --release -p viscocontact --features data,plot,surfaces --example rough_creep`
 
 mod support;
 

@@ -3,7 +3,7 @@
 //!
 //! To step there would take as many steps as the longest relaxation time takes: 10 s at 1 m/s are ten kilometres of road.
 //!
-//! `cargo run --release -p viscocontact --features analytic,plot,sliding,surfaces --example rubber_road`
+//! `cargo run --release -p viscocontact --features analytic,data,plot,sliding,surfaces --example rubber_road`
 
 mod support;
 

@@ -4,7 +4,7 @@
 //! 2. A start from rest, a stop and the way back, on a grid that stays with the solid: how friction builds up over a
 //!    length of contact, and how the sphere sinks in while it rests and climbs when it moves.
 //!
-//! `cargo run --release -p viscocontact --features plot --example sliding_sphere`
+//! `cargo run --release -p viscocontact --features motion,plot --example sliding_sphere`
 
 #[path = "support/scenes/march.rs"]
 mod march;

@@ -5,7 +5,7 @@
 //! its edge. The gel loses most at the speeds at which it relaxes while it separates; at greater speeds it is an elastic body again, a
 //! stiffer one. The apparent work of separation is the work of the pull from the last zero of the force on.
 //!
-//! `cargo run --release -p viscocontact --features plot --example tack`
+//! `cargo run --release -p viscocontact --features adhesion,layers,plot --example tack`
 
 mod support;
 

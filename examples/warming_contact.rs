@@ -2,7 +2,7 @@
 //! seal warms up, and the contact grows as the rubber softens. Beside it the same ball on a seal that stays cold, and on one
 //! that stays in between; over the reduced time ξ = ∫ dt/a_T all three are one, that of Lee & Radok's growing sphere.
 //!
-//! `cargo run --release -p viscocontact --features plot --example warming_contact`
+//! `cargo run --release -p viscocontact --features plot,temperature --example warming_contact`
 
 mod support;
 

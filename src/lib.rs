@@ -112,11 +112,17 @@
 //!
 //! | feature | room |
 //! |---|---|
+//! | `adhesion` | [`adhesion`], [`contact::Builder::attraction`] |
 //! | `analytic` | [`analytic`] |
 //! | `checkpoint` | save and resume: [`ViscoelasticContact::save`], [`run::Run::autosave_to`] |
-//! | `data` | [`rheology::Measurements`], [`rheology::MasterCurve`], [`numeric::least_squares`] |
+//! | `contacts` | runs of contacts of your own: [`run::Contact`] |
+//! | `data` | [`rheology::Measurements`], [`rheology::MasterCurve`], [`rheology::library`], [`numeric::least_squares`] |
+//! | `energies` | [`contact::EnergyBalance`] |
 //! | `friction` | [`friction`]: partial slip, shear and torsion in space |
 //! | `laws` | [`laws`]: laws for shapes, rheologies and histories, `proptest` strategies |
+//! | `layers` | [`Layer`] |
+//! | `motion` | [`motion`]: indenters that move along the surface, or over the bodies |
+//! | `observe` | [`observe`]: patches, profiles, distributions, stiffness, error due to the mesh |
 //! | `output` | [`output`]: CSV, VTK |
 //! | `plot` | [`plot`]: PNG, SVG and GIF |
 //! | `sliding` | [`sliding`] |
@@ -124,6 +130,7 @@
 //! | `study` | [`study`] |
 //! | `stress` | [`observe::SubsurfaceStress`], [`contact::StressHistory`] |
 //! | `surfaces` | [`geometry::HeightMap`], [`geometry::Rough`], [`geometry::SurfaceStatistics`] |
+//! | `temperature` | [`rheology::TimeTemperature`], [`rheology::TemperatureHistory`] |
 //! | `text` | [`input`] |
 //!
 //! Beside the rooms: `rayon` (default): threads, from 2¹⁵ computed cells on. `npy`: NPZ and NPY files. `x3p`: X3P height
@@ -144,10 +151,12 @@
 #[macro_use]
 mod values;
 
+#[cfg(feature = "adhesion")]
 pub mod adhesion;
 #[cfg(feature = "analytic")]
 pub mod analytic;
 mod ascending;
+mod attraction;
 mod axis;
 pub mod contact;
 mod dense;
@@ -156,8 +165,10 @@ mod equilibrium;
 mod error;
 mod events;
 mod extent;
+#[cfg(any(feature = "analytic", feature = "friction", feature = "sliding", feature = "stress", feature = "surfaces"))]
 mod fft;
 pub mod fields;
+#[cfg(any(feature = "checkpoint", feature = "output", feature = "sliding", feature = "states", feature = "text"))]
 mod file;
 #[cfg(feature = "friction")]
 pub mod friction;
@@ -177,6 +188,7 @@ pub mod load;
 mod memory;
 pub mod motion;
 pub mod numeric;
+#[cfg(feature = "observe")]
 pub mod observe;
 #[cfg(feature = "output")]
 pub mod output;
@@ -204,13 +216,17 @@ mod sum;
 
 pub use axis::Axis;
 pub use contact::ViscoelasticContact;
+#[cfg(feature = "text")]
+pub use error::TextError;
 pub use error::{
-    Convergence, Error, ErrorKind, FileError, KernelError, OutputError, Result, Special, TextError, Trend, UserError,
+    Convergence, Error, ErrorKind, FileError, KernelError, OutputError, Result, Special, Trend, UserError,
 };
 pub use grid::Grid;
 #[cfg(feature = "text")]
 pub use input::{Delimiter, TextFormat};
-pub use kernel::{InfluenceKernel, Layer, Workspace};
+#[cfg(feature = "layers")]
+pub use kernel::Layer;
+pub use kernel::{InfluenceKernel, Workspace};
 /// The crate of the complex numbers of moduli and compliances.
 pub use num_complex;
 
@@ -225,6 +241,8 @@ pub use num_complex;
 /// # Ok::<(), Error>(())
 /// ```
 pub mod prelude {
+    #[cfg(feature = "layers")]
+    pub use crate::Layer;
     pub use crate::contact::{
         BodyState, Builder, Edge, Frame, Settings, Snapshot, StepError, StepReport, TimeRule, ViscoelasticContact,
         Warnings,
@@ -237,6 +255,7 @@ pub mod prelude {
         Cone, Cylinder, Ellipsoid, FlatPunch, FnGeometry, Geometry, Repeated, Shifted, Sphere, Wavy,
     };
     pub use crate::load::{FnHistory, Load, LoadHistory, Periodic, PiecewiseLinear, Ramp, Sinusoid, StepLoad, Tilt};
+    #[cfg(feature = "motion")]
     pub use crate::motion::{FnPath, Straight, Travel};
     #[cfg(feature = "output")]
     pub use crate::output::{CsvHistory, Earlier, Field, FrameSeries, Metadata};
@@ -253,7 +272,7 @@ pub mod prelude {
     pub use crate::states::{ElasticStates, Reach, StatesContact, Sweep};
     #[cfg(feature = "study")]
     pub use crate::study::{Accuracy, Observable, Study};
-    pub use crate::{Axis, Error, Grid, InfluenceKernel, Layer};
+    pub use crate::{Axis, Error, Grid, InfluenceKernel};
 }
 
 #[doc = include_str!("../README.md")]

@@ -1,6 +1,9 @@
 //! Sums in lanes: additions are independent of each other, and rounding errors grow more slowly with the number of
 //! values.
 
+/// Rounding of a sum of a few terms, over the sum of their sizes.
+pub(crate) const ROUNDING: f64 = 8.0 * f64::EPSILON;
+
 /// A struct of sums and maxima over cells, each with a name, that bands and ranks reduce.
 ///
 /// `named_sums!(Found { force: +, moments: modes, deepest: max })` declares `Found` with five numbers: a sum, three

@@ -49,6 +49,12 @@ impl Computation {
         Ok(Box::new(Computation { state, window, trial, attracted: None }))
     }
 
+    /// Adds the convolutions and preconditioner applications of a trial that does not count.
+    pub(crate) fn add_work(&self, work: &mut [usize; 2]) {
+        let counts = self.trial.solution.counts;
+        *work = [work[0] + counts.convolutions, work[1] + counts.preconditioner_applications];
+    }
+
     /// Where the trial presses. A call of all ranks.
     pub(crate) fn pressed(&self, scene: &Scene) -> Pressed {
         let Computation { state: State { held, .. }, trial, .. } = self;

@@ -21,6 +21,7 @@ mod builder;
 
 pub(crate) mod step;
 
+#[cfg(feature = "motion")]
 pub(crate) mod moving;
 
 mod read;
@@ -38,14 +39,18 @@ pub use crate::error::CheckpointError;
 pub use crate::error::StepError;
 pub use crate::fields::BodyState;
 pub use builder::Builder;
+
 pub use builder::memory::Memory;
+#[cfg(feature = "motion")]
 pub use moving::along_path::TravelReport;
+#[cfg(feature = "energies")]
 pub use read::energies::{Energies, EnergyBalance};
 pub(crate) use read::limits::Limits;
 pub use read::report::{Estimated, StepReport};
 #[cfg(feature = "stress")]
 pub use read::stress::StressHistory;
 pub use state::snapshot::Snapshot;
+#[cfg(feature = "adhesion")]
 pub use step::attraction::PassReport;
 pub use stepper::ViscoelasticContact;
 

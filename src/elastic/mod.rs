@@ -8,7 +8,6 @@
 //! compliance, and a surface that the past has displaced ([`ElasticContact::set_surface`]).
 
 mod builder;
-mod mesh_error;
 mod report;
 
 use std::sync::Arc;

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::Grid;
-use crate::adhesion::Attraction;
+use crate::attraction::Attraction;
 use crate::equilibrium::{Indenter, Region, Settings};
 use crate::error::{Error, KernelError, Result, count_within};
 use crate::kernel::{HalfSpace, InfluenceKernel};

@@ -10,6 +10,7 @@ pub(crate) mod held;
 pub(crate) mod indenter;
 pub(crate) mod pressed;
 pub(crate) mod request;
+pub(crate) mod resolution;
 mod settings;
 pub(crate) mod spring;
 mod warnings;

@@ -1,8 +1,8 @@
 //! Where a contact presses.
 
+use crate::equilibrium::resolution::{Outline, Resolution};
 use crate::equilibrium::{Ground, Indenter, Region};
 use crate::extent::Extent;
-use crate::observe::resolution::{Outline, Resolution};
 
 /// Bodies whose cells are counted together.
 const TOGETHER: usize = 8;

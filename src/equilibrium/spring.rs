@@ -14,6 +14,7 @@ use crate::geometry::Gap;
 use crate::load::Load;
 use crate::quadrature::bisect;
 use crate::solver::Outcome;
+use crate::sum::ROUNDING;
 
 /// Greatest number of forces that are tried.
 const MAX_FORCES: usize = 60;
@@ -21,8 +22,6 @@ const MAX_FORCES: usize = 60;
 const SHARE_OF_TOLERANCE: f64 = 0.3;
 /// The next force over the last, where a body that tilts freely may bear none.
 const SMALLER: f64 = 0.1;
-/// Rounding of a depth, relative to its summands.
-const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// Halvings of the depth of a first contact.
 const HALVINGS: usize = 40;
 

@@ -1,4 +1,4 @@
-use super::Violation;
+use super::{ErrorKind, Violation};
 use crate::rounded::{TIME, rounded};
 
 /// What goes wrong with surfaces that attract each other.
@@ -108,4 +108,13 @@ pub enum AdhesionError {
         /// Change allowed.
         tolerance: f64,
     },
+}
+
+impl AdhesionError {
+    pub(super) fn error_kind(&self) -> ErrorKind {
+        match self {
+            AdhesionError::NotConverged { .. } | AdhesionError::FillsGrid { .. } => ErrorKind::Convergence,
+            _ => ErrorKind::Value,
+        }
+    }
 }

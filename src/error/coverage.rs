@@ -47,13 +47,15 @@ pub(crate) struct Case(&'static str, &'static [(Special, &'static str)]);
 const ONE_PROCESS: &str = "compute the contact in one process";
 const OTHER_FRAME: &str = "choose the other Frame with Settings::with_frame";
 const STRESS_OF_TRACTION: &str = "make a SubsurfaceStress from ViscoelasticContact::traction_into";
-const LAYER: &str = "make the layer by Layer::bonded_to_material";
 
+/// A table of cases.
 macro_rules! not_covered {
     ($($(#[$attribute:meta])* $name:ident: $what:literal, $($special:ident: $cure:expr),+;)*) => {
-        $($(#[$attribute])* pub(crate) const $name: Case = Case($what, &[$(($special, $cure)),+]);)*
+        $($(#[$attribute])* pub(crate) const $name: $crate::error::coverage::Case = $crate::error::coverage::Case::new($what, &[$(($special, $cure)),+]);)*
     };
 }
+
+pub(crate) use not_covered;
 
 not_covered! {
     // parts of a scene
@@ -92,35 +94,13 @@ not_covered! {
     ASYMMETRY: "the asymmetry", Ranks: ONE_PROCESS;
     #[cfg(feature = "plot")]
     PICTURE: "a picture of fields", Ranks: ONE_PROCESS;
-
-    // steady motions
-    COEFFICIENTS: "a body of coefficients", SteadyMotion: "take InfluenceKernel::from_spectrum or a layer";
-    JUMPING_SHAPE: "a shape that jumps once in the period of its body",
-        SteadyMotion: "take one that repeats, or taper its ends";
-    MODULUS: "a modulus over frequency, of a body that is not periodic along both axes,",
-        SteadyMotion: "fit a series to it";
-    MODULUS_OF_TWO: "a counter-body beside a modulus over frequency",
-        SteadyMotion: "add its compliance to that of the modulus";
-    COUNTER_BODY: "a counter-body that creeps, of which it is not said whether it slides or rolls,",
-        SteadyMotion: "say it by Builder::counter_motion";
-    FLOWING_COUNTER: "a counter-body that slides and flows",
-        SteadyMotion: "give it an equilibrium modulus, or let it roll";
-    FLOW: "a body that flows",
-        SteadyMotion: "take a half-space, or an equilibrium modulus: one approach or slope grows for ever";
-    DRIFT: "a body that flows, under an approach or at rest,", SteadyMotion: "give a force and a velocity";
-    BASE_OF_NO_LAYER: "a base below another body than a layer", SteadyMotion: LAYER;
-    CHANGING_RATIO: "a layer or base whose Poisson's ratio changes, or of two bodies,",
-        SteadyMotion: "make it by Material::incompressible or Material::constant_poisson";
-    OTHER_BASE: "a base of another ratio than the layer's", SteadyMotion: LAYER;
-    SPRING: "a body on a spring", SteadyMotion: "give the force or the approach";
-    NEAR_DATUM: "a line load of given approach whose datum is nearer than the grid and the longest memory of the \
-        motion",
-        SteadyMotion: "give the force, or a datum farther away";
-    OBLIQUE: "a motion that follows neither x1 nor x2, over a body that is not periodic along both,",
-        SteadyMotion: "turn the shape instead";
 }
 
 impl Case {
+    pub(crate) const fn new(what: &'static str, special: &'static [(Special, &'static str)]) -> Case {
+        Case(what, special)
+    }
+
     fn refused(self, (special, cure): (Special, &'static str)) -> Error {
         Error::NotCovered { special, what: self.0, cure }
     }

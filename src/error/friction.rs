@@ -1,3 +1,4 @@
+use crate::error::ErrorKind;
 use crate::rounded::{TIME, rounded};
 
 /// Errors of contacts with friction in space.
@@ -27,4 +28,13 @@ pub enum FrictionError {
         /// What is allowed.
         tolerance: f64,
     },
+}
+
+impl FrictionError {
+    pub(super) fn error_kind(&self) -> ErrorKind {
+        match self {
+            FrictionError::OtherBodies => ErrorKind::Unsupported,
+            FrictionError::NotConverged { .. } => ErrorKind::Convergence,
+        }
+    }
 }

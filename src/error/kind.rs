@@ -1,6 +1,6 @@
 //! What sort of failure an error is.
 
-use crate::error::{AdhesionError, Error, KernelError, MapError, MaterialError, SlidingError, StatesError, StepError};
+use crate::error::{Error, KernelError, MaterialError, StepError};
 
 /// What sort of failure an [`Error`] is, for programs that map errors to others. The error itself tells field, value
 /// and cure.
@@ -32,36 +32,28 @@ impl Error {
     /// ```
     pub fn kind(&self) -> ErrorKind {
         match self {
-            Error::File(_) | Error::Text(_) | Error::Output(_) => ErrorKind::File,
+            Error::File(_) | Error::Output(_) => ErrorKind::File,
             #[cfg(feature = "checkpoint")]
             Error::Checkpoint { .. } => ErrorKind::File,
-            Error::Map(error) => match error {
-                MapError::NotFinite { .. }
-                | MapError::NothingKnown
-                | MapError::TooFine { .. }
-                | MapError::Incomplete { .. }
-                | MapError::NotFilled { .. } => ErrorKind::Value,
-                _ => ErrorKind::File,
-            },
+            #[cfg(feature = "adhesion")]
+            Error::Adhesion(error) => error.error_kind(),
+            #[cfg(feature = "text")]
+            Error::Text(_) => ErrorKind::File,
+            #[cfg(feature = "surfaces")]
+            Error::Map(error) => error.error_kind(),
+            #[cfg(feature = "friction")]
+            Error::Friction(error) => error.error_kind(),
+            #[cfg(feature = "sliding")]
+            Error::Sliding(error) => error.error_kind(),
+            #[cfg(feature = "states")]
+            Error::States(error) => error.error_kind(),
             Error::OutOfMemory { .. } => ErrorKind::Memory,
             Error::Cancelled { .. } | Error::Ranks(_) => ErrorKind::Cancelled,
             Error::Material(MaterialError::PoorFit { .. })
-            | Error::Adhesion(AdhesionError::NotConverged { .. } | AdhesionError::FillsGrid { .. })
-            | Error::Sliding(
-                SlidingError::NotConverged { .. } | SlidingError::Rounding { .. } | SlidingError::Drives { .. },
-            )
-            | Error::States(StatesError::OutOfOrder { .. })
             | Error::Step(StepError::NotConverged { .. } | StepError::StepTooShort { .. }) => ErrorKind::Convergence,
-            Error::States(StatesError::Beyond { .. } | StatesError::Below { .. }) => ErrorKind::Value,
-            #[cfg(feature = "friction")]
-            Error::Friction(crate::error::FrictionError::NotConverged { .. }) => ErrorKind::Convergence,
-            #[cfg(feature = "friction")]
-            Error::Friction(_) => ErrorKind::Unsupported,
             Error::NotCovered { .. }
-            | Error::Sliding(SlidingError::ThinLayer { .. })
             | Error::Kernel(KernelError::NoStress { .. })
             | Error::Material(MaterialError::ChangingPoisson { .. } | MaterialError::VerticalFactors { .. })
-            | Error::States(_)
             | Error::Step(StepError::TiltOfPeriodic { .. }) => ErrorKind::Unsupported,
             _ => ErrorKind::Value,
         }

@@ -1,3 +1,4 @@
+use super::ErrorKind;
 use crate::Axis;
 use crate::rounded::rounded;
 
@@ -225,4 +226,22 @@ pub enum MapError {
         /// The unit given.
         given: String,
     },
+}
+
+impl MapError {
+    pub(super) fn error_kind(&self) -> ErrorKind {
+        match self {
+            MapError::NotFinite { .. }
+            | MapError::NothingKnown
+            | MapError::TooFine { .. }
+            | MapError::Incomplete { .. }
+            | MapError::NotFilled { .. } => ErrorKind::Value,
+            _ => ErrorKind::File,
+        }
+    }
+
+    /// The kind of the system's error behind this one.
+    pub(super) fn io_kind(&self) -> Option<std::io::ErrorKind> {
+        if let MapError::Unwritable { kind, .. } = self { *kind } else { None }
+    }
 }

@@ -1,5 +1,6 @@
 //! The error type of the crate, and the checks that return it.
 
+#[cfg(feature = "adhesion")]
 mod adhesion;
 #[cfg(feature = "checkpoint")]
 mod checkpoint;
@@ -13,18 +14,25 @@ mod friction;
 mod kernel;
 mod kind;
 mod load;
+#[cfg(feature = "surfaces")]
 mod map;
 mod material;
 mod output;
 mod ranks;
+#[cfg(feature = "sliding")]
 mod sliding;
+#[cfg(feature = "states")]
 mod states;
 mod step;
+#[cfg(feature = "data")]
 mod table;
+#[cfg(feature = "text")]
 mod text;
 mod user;
+#[cfg(feature = "adhesion")]
 mod violation;
 
+#[cfg(feature = "adhesion")]
 pub use adhesion::AdhesionError;
 #[cfg(feature = "checkpoint")]
 pub use checkpoint::CheckpointError;
@@ -40,18 +48,25 @@ pub use friction::FrictionError;
 pub use kernel::KernelError;
 pub use kind::ErrorKind;
 pub use load::LoadError;
+#[cfg(feature = "surfaces")]
 pub use map::MapError;
 pub use material::MaterialError;
 pub use output::OutputError;
 pub use ranks::RanksError;
+#[cfg(feature = "sliding")]
 pub use sliding::SlidingError;
+#[cfg(feature = "states")]
 pub use states::StatesError;
 pub use step::StepError;
+#[cfg(feature = "data")]
 pub use table::{Place, TableError};
+#[cfg(feature = "text")]
 pub use text::TextError;
 pub use user::UserError;
 pub(crate) use user::{Failure, or_failure_of};
+#[cfg(feature = "laws")]
 pub(crate) use violation::KIND_OF_LOAD;
+#[cfg(feature = "adhesion")]
 pub use violation::{Location, Verdict, Violation};
 
 use crate::rounded::{rounded, without_noise};
@@ -195,6 +210,7 @@ pub enum Error {
     Friction(#[from] FrictionError),
 
     /// A steady motion was not found, or there is none.
+    #[cfg(feature = "sliding")]
     #[error(transparent)]
     Sliding(#[from] SlidingError),
 
@@ -207,14 +223,17 @@ pub enum Error {
     File(#[from] FileError),
 
     /// A table in a text file cannot be read.
+    #[cfg(feature = "text")]
     #[error(transparent)]
     Text(#[from] TextError),
 
     /// A table of measured data is not allowed.
+    #[cfg(feature = "data")]
     #[error(transparent)]
     Table(#[from] TableError),
 
     /// A height map, or its file, is not allowed.
+    #[cfg(feature = "surfaces")]
     #[error(transparent)]
     Map(#[from] MapError),
 
@@ -226,9 +245,11 @@ pub enum Error {
     #[error(transparent)]
     Ranks(#[from] RanksError),
     /// A contact of surfaces that attract each other is not covered, not resolved, or comes off.
+    #[cfg(feature = "adhesion")]
     #[error(transparent)]
     Adhesion(#[from] AdhesionError),
     /// A contact on elastic states is not covered by them.
+    #[cfg(feature = "states")]
     #[error(transparent)]
     States(#[from] StatesError),
 
@@ -256,6 +277,7 @@ pub enum Error {
     },
 
     /// A [`Study`](crate::study::Study) found no domain that holds the contact: none is large enough.
+    #[cfg(feature = "study")]
     #[error(
         "no domain was found that holds the contact (the last one tried was {length:.1e} m wide): check geometry \
         and load"

@@ -3,7 +3,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::{Error, FileError, MapError};
+use super::{Error, FileError};
 
 /// A file or folder of results that cannot be written, and why.
 ///
@@ -87,7 +87,9 @@ impl Error {
     pub fn io_kind(&self) -> Option<io::ErrorKind> {
         match self {
             Error::Output(error) => Some(error.kind()),
-            Error::File(FileError::Unreadable { kind, .. }) | Error::Map(MapError::Unwritable { kind, .. }) => *kind,
+            Error::File(FileError::Unreadable { kind, .. }) => *kind,
+            #[cfg(feature = "surfaces")]
+            Error::Map(error) => error.io_kind(),
             #[cfg(feature = "checkpoint")]
             Error::Checkpoint { cause, .. } => cause.io_kind(),
             _ => None,

@@ -1,3 +1,4 @@
+use super::ErrorKind;
 use crate::rounded::rounded;
 
 /// Errors of a steady motion.
@@ -76,6 +77,18 @@ pub enum SlidingError {
         /// The residual allowed.
         tolerance: f64,
     },
+}
+
+impl SlidingError {
+    pub(super) fn error_kind(&self) -> ErrorKind {
+        match self {
+            SlidingError::NotConverged { .. } | SlidingError::Rounding { .. } | SlidingError::Drives { .. } => {
+                ErrorKind::Convergence
+            }
+            SlidingError::ThinLayer { .. } => ErrorKind::Unsupported,
+            SlidingError::NotPassive { .. } => ErrorKind::Value,
+        }
+    }
 }
 
 /// The modulus E′ + i E″ of the conjugate of a compliance.

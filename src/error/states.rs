@@ -1,3 +1,4 @@
+use super::ErrorKind;
 use crate::rounded::{TIME, rounded};
 
 /// What the elastic states of a contact cannot answer.
@@ -111,4 +112,14 @@ pub enum StatesError {
         /// θ over f w.
         share: f64,
     },
+}
+
+impl StatesError {
+    pub(super) fn error_kind(&self) -> ErrorKind {
+        match self {
+            StatesError::OutOfOrder { .. } => ErrorKind::Convergence,
+            StatesError::Beyond { .. } | StatesError::Below { .. } => ErrorKind::Value,
+            _ => ErrorKind::Unsupported,
+        }
+    }
 }

@@ -1,25 +1,22 @@
 //! Fields that outlive their contact.
 
-use std::sync::Arc;
-
-use crate::equilibrium::{Ground, Held, Region};
+use crate::equilibrium::{Ground, Held};
 use crate::fields::{About, Fields, Surface, View};
 use crate::rheology::{Material, TemperatureHistory};
-use crate::solver::RigidMotion;
 
 /// The fields of a contact as they were, made by [`Fields::keep`] and by what finds fields without a contact of their
 /// own: about 24 bytes per computed cell, and the indenter is shared.
 #[derive(Debug, Clone)]
 pub struct KeptFields {
-    ground: Ground,
-    held: Held,
-    displacement: Vec<f64>,
-    far: Option<(f64, Vec<f64>)>,
-    view: View,
-    time: Option<f64>,
-    reduced_time: f64,
-    material: Option<Material>,
-    temperature: Option<TemperatureHistory>,
+    pub(super) ground: Ground,
+    pub(super) held: Held,
+    pub(super) displacement: Vec<f64>,
+    pub(super) far: Option<(f64, Vec<f64>)>,
+    pub(super) view: View,
+    pub(super) time: Option<f64>,
+    pub(super) reduced_time: f64,
+    pub(super) material: Option<Material>,
+    pub(super) temperature: Option<TemperatureHistory>,
 }
 
 impl KeptFields {
@@ -31,25 +28,6 @@ impl KeptFields {
         let about = About { time: *time, reduced_time: *reduced_time, material, temperature };
         Fields { ground, held, surface, view, kernel: None, about }
     }
-
-    /// The same with a pressure on the whole grid in the place of its own; `None` where not all of these cells are
-    /// computed.
-    pub(crate) fn with_pressure(mut self, pressure: &[f64]) -> Option<KeptFields> {
-        let Held { region, current, .. } = &mut self.held;
-        let n2 = region.whole.cells()[1];
-        let pressed = |k: usize| pressure[k] > 0.0;
-        if (0..pressure.len()).any(|k| pressed(k) && region.find([k / n2, k % n2]).is_none()) {
-            return None;
-        }
-        current.contact_cells = (0..pressure.len()).filter(|k| pressed(*k)).count();
-        for (k, own) in current.solution.pressure.iter_mut().enumerate() {
-            let [i, j] = region.cell(k);
-            *own = pressure[i * n2 + j];
-        }
-        self.held.sum_up();
-        self.view.refresh(&self.held);
-        Some(self)
-    }
 }
 
 impl<'a> From<&'a KeptFields> for Fields<'a> {
@@ -59,24 +37,6 @@ impl<'a> From<&'a KeptFields> for Fields<'a> {
 }
 
 impl Fields<'_> {
-    /// The fields of the same rigid body in a `motion`, under a pressure and over a displacement on the whole grid.
-    pub(crate) fn keep_with(
-        &self,
-        pressure: Vec<f64>,
-        displacement: Vec<f64>,
-        motion: RigidMotion,
-        time: f64,
-    ) -> KeptFields {
-        let Fields { ground, held: Held { indenter, .. }, .. } = self;
-        let mut held = Held::layout(Arc::clone(indenter), Region::whole(&ground.grid, [false; 2]));
-        held.current.contact_cells = pressure.iter().filter(|p| **p > 0.0).count();
-        (held.current.solution.pressure, held.current.motions[0]) = (pressure, motion);
-        held.sum_up();
-        let (ground, far, view) = (Ground::clone(ground), None, View::default());
-        let (material, temperature) = (None, None);
-        KeptFields { ground, held, displacement, far, view, time: Some(time), reduced_time: 0.0, material, temperature }
-    }
-
     /// A copy that outlives the contact.
     ///
     /// ```

@@ -5,8 +5,7 @@ use std::ops::Range;
 use crate::equilibrium::Held;
 use crate::error::{Result, count_within, exact_length};
 use crate::fields::Fields;
-use crate::parallel::Rows;
-use crate::{Axis, sum};
+use crate::sum;
 
 impl Fields<'_> {
     /// The rows (indices along x1) that [`pressure`](Fields::pressure) and all other fields hold: all of the grid,
@@ -53,14 +52,6 @@ impl Fields<'_> {
         })
     }
 
-    /// The values of a field along a line of cells, of all ranks.
-    pub(super) fn line_of(&self, field: &[f64], along: Axis, line: usize) -> Result<Vec<f64>> {
-        let [n1, n2] = self.grid().cells();
-        let [rows, columns] = if along == Axis::X1 { [0..n1, line..line + 1] } else { [line..line + 1, 0..n2] };
-        let brought = self.bring(field, None, rows.clone(), columns)?;
-        Ok(brought.iter().flat_map(|line| rows.clone().flat_map(|row| line.row(row))).copied().collect())
-    }
-
     /// The rows of the whole grid that fields of a rank hold.
     pub(super) fn rows_of(&self, rank: usize) -> Range<usize> {
         let region = &self.held.region;
@@ -105,39 +96,11 @@ impl Fields<'_> {
 
     /// Σ over all rows of the whole grid, in their order, of what `of_row` finds in the pressure of a row, given its
     /// number. A call of all ranks.
-    pub(super) fn sum_of_rows<const K: usize>(&self, of_row: impl Fn(usize, &[f64]) -> [f64; K]) -> [f64; K] {
+    pub(crate) fn sum_of_rows<const K: usize>(&self, of_row: impl Fn(usize, &[f64]) -> [f64; K]) -> [f64; K] {
         let ([n1, n2], own, pressure) = (self.grid().cells(), self.rows(), self.pressure());
         let row = |i: usize| &pressure[(i - own.start) * n2..][..n2];
         let computed = |i: usize| if own.contains(&i) { i } else { n1 - 1 - i };
         let found = self.with_images(own.clone()).into_iter().flatten().map(|i| of_row(i, row(computed(i))));
         self.sum_in_order(found, |rank| self.with_images(self.rows_of(rank)))
-    }
-
-    /// Σ |p − p′| and Σ p over the whole grid, with the p′ of another contact of the scene. A call of all ranks.
-    pub(crate) fn pressure_beside(&self, other: Fields<'_>) -> [f64; 2] {
-        let ([n1, n2], own) = (self.grid().cells(), self.rows());
-        self.sum_of_rows(|i, row| {
-            let computed = if own.contains(&i) { i } else { n1 - 1 - i };
-            let others = &other.pressure()[(computed - own.start) * n2..];
-            let off = row.iter().zip(others).map(|(one, other)| (one - other).abs());
-            [off.sum(), row.iter().sum()]
-        })
-    }
-
-    /// Returns `own` if all ranks succeed, else an error on every rank.
-    pub(crate) fn agreed<T>(&self, own: Result<T>) -> Result<T> {
-        let rows = self.held.region.rows();
-        rows.or_loss(|| rows.agree(own))
-    }
-
-    /// Runs `job` on rank 0 alone; all ranks wait for it and share its error.
-    pub(crate) fn by_one_rank<T>(&self, job: impl FnOnce() -> Result<T>) -> Result<Option<T>> {
-        let rows = self.held.region.rows();
-        self.agreed(if rows.rank() == 0 { job().map(Some) } else { Ok(None) })
-    }
-
-    /// The local rows, with the reductions over all ranks.
-    pub(crate) fn shared_rows(&self) -> Rows {
-        self.held.region.rows()
     }
 }

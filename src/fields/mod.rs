@@ -1,14 +1,18 @@
 //! What is read of a contact of any kind: pressure, gap, displacement, motions, and what follows from them.
 
+pub(crate) mod area;
 mod body;
 mod brought;
+#[cfg(feature = "states")]
+mod found;
 mod kept;
+#[cfg(feature = "motion")]
 mod lateral;
 mod local_rows;
-pub(crate) mod observations;
+pub(crate) mod mesh_error;
+#[cfg(not(feature = "observe"))]
+mod no_observe;
 mod shared_area;
-#[cfg(feature = "stress")]
-mod stress;
 pub(crate) mod view;
 
 use std::fmt;
@@ -19,11 +23,10 @@ pub use body::BodyState;
 pub use kept::KeptFields;
 pub(crate) use view::{Surface, View};
 
-use crate::adhesion::Attraction;
+use crate::attraction::Attraction;
 use crate::equilibrium::{Frame, Ground, Held, Region, Settings};
 use crate::error::{Result, Special, coverage, exact_length};
 use crate::extent::Extent;
-use crate::geometry::Gap;
 use crate::kernel::{InfluenceKernel, LocalKernel};
 use crate::load::Load;
 use crate::rheology::{Material, TemperatureHistory};
@@ -184,21 +187,6 @@ impl<'a> Fields<'a> {
     /// Tilt (α1, α2) of the (first) body \[rad\]: it lowers the surface by ω + α1 x1 + α2 x2.
     pub fn tilt(&self) -> [f64; 2] {
         self.held.current.motions[0].tilt
-    }
-
-    /// The motion of a body.
-    pub(crate) fn motion(&self, body: usize) -> RigidMotion {
-        self.held.current.motions[body]
-    }
-
-    /// The gap before the bodies deform.
-    pub(crate) fn initial_gap(&self) -> &'a Gap {
-        self.held.indenter.gap()
-    }
-
-    /// Whether the approach of a body is given.
-    pub(crate) fn is_by_approach(&self, body: usize) -> bool {
-        matches!(self.held.loads[body], Load::Approach { .. })
     }
 
     /// Total normal force Σ p ΔA on all bodies \[N\], Eq. 4 of the [paper](crate::paper); < 0 where attraction pulls

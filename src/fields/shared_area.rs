@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use crate::equilibrium::Held;
 use crate::fields::Fields;
-use crate::observe::area::{PressedCells, REACH};
+use crate::fields::area::{PressedCells, REACH};
 use crate::parallel::Rows;
 
 /// Rows that are looked at together.

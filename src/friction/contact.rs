@@ -12,6 +12,7 @@ use crate::friction::problem::{Cell, Problem, Solution, rigid};
 use crate::friction::region::{Rectangle, extent};
 use crate::hereditary::{ExponentialRule, GroupHistory, Interpolant};
 use crate::load::Load;
+use crate::solver::RigidMotion;
 
 /// Loads beyond what friction carries by less than this part are carried: rounding.
 const ROUNDING: f64 = 1e-9;
@@ -155,10 +156,10 @@ impl FrictionContact {
         shear.validate()?;
         self.normal.snapshot_into(&mut self.start);
         self.normal.fields().gap_into(&mut self.step.gap)?;
-        let (approach, reduced) = (self.normal.fields().motion(0), self.normal.reduced_time());
+        let (approach, reduced) = (self.placed(), self.normal.reduced_time());
         let is_first = self.normal.contact_cells() == 0;
         let normal = self.normal.step(dt, load)?;
-        let change = self.normal.fields().motion(0) - approach;
+        let change = self.placed() - approach;
         let met = |k: [f64; 2]| change.at(k);
         let outcome = self.shear_to(
             if dt == 0.0 { 0.0 } else { self.normal.reduced_time() - reduced },
@@ -171,6 +172,11 @@ impl FrictionContact {
             self.normal.restore(&self.start)?;
         }
         outcome
+    }
+
+    /// Where the body is.
+    fn placed(&self) -> RigidMotion {
+        self.normal.computation.state.held.current.motions[0]
     }
 
     /// Takes the step along the surface, after that of the normal contact; `closed` tells by how much the body came

@@ -32,6 +32,7 @@ mod surfaces;
 mod waves;
 mod wavy;
 
+#[cfg(feature = "surfaces")]
 pub use crate::error::MapError;
 pub use cone::Cone;
 pub use cylinder::Cylinder;

@@ -43,7 +43,7 @@ pub(crate) enum Interpolant {
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct ExponentialRule {
     #[cfg_attr(feature = "checkpoint", serde(with = "crate::rheology::SavedRelaxation"))]
-    relaxation: RelaxationSpectrum,
+    pub(super) relaxation: RelaxationSpectrum,
     /// Lengths of the last two steps since the last jump or corner.
     spans: [f64; 2],
     /// How many differences are known at the end of the last step.
@@ -142,15 +142,6 @@ impl ExponentialRule {
             accepted: 0,
             relaxed,
         }
-    }
-
-    /// E_i of each relaxation time, the longest first, and the most by which its strain alone, 1, can ever raise a
-    /// free surface, about: E_i over the sum of E∞ and the moduli of times at least as long.
-    pub(super) fn influences(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
-        self.relaxation.terms().iter().rev().scan(self.equilibrium(), |longer, &(modulus, _)| {
-            *longer += modulus;
-            Some((modulus, modulus / *longer))
-        })
     }
 
     /// Number of relaxation times.

@@ -1,7 +1,8 @@
 //! A list of displacements that grows, splits and merges, each with a past of its own.
 
+use pulp::{Arch, Simd, WithSimd};
+
 use crate::hereditary::exponential_rule::{ExponentialRule, Interpolant, Weights};
-use crate::parallel::combine;
 
 /// Rounding of a displacement between 0 and 1.
 const ROUNDING: f64 = 1e-12;
@@ -288,5 +289,52 @@ impl GroupHistory {
     /// Removes the pasts of all groups after the first few.
     pub(crate) fn truncate(&mut self, groups: usize) {
         self.columns().for_each(|column| column.truncate(groups));
+    }
+}
+
+impl ExponentialRule {
+    /// E_i of each relaxation time, the longest first, and the most by which its strain alone, 1, can ever raise a
+    /// free surface, about: E_i over the sum of E∞ and the moduli of times at least as long.
+    fn influences(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
+        self.relaxation.terms().iter().rev().scan(self.equilibrium(), |longer, &(modulus, _)| {
+            *longer += modulus;
+            Some((modulus, modulus / *longer))
+        })
+    }
+}
+
+/// Sets `target` to `kept` target + Σ weight column, summed in this order: bitwise as one element after the other.
+/// Written in vectors, since builds that are optimised a little only find none.
+fn combine(target: &mut [f64], kept: f64, weights: [f64; 3], columns: [&[f64]; 3]) {
+    Arch::new().dispatch(Combination { target, kept, weights, columns });
+}
+
+struct Combination<'a> {
+    target: &'a mut [f64],
+    kept: f64,
+    weights: [f64; 3],
+    columns: [&'a [f64]; 3],
+}
+
+impl WithSimd for Combination<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Combination { target, kept, weights: [a, b, c], columns: [first, second, third] } = self;
+        let (vectors, rest) = S::as_mut_simd_f64s(target);
+        let (firsts, first) = S::as_simd_f64s(first);
+        let (seconds, second) = S::as_simd_f64s(second);
+        let (thirds, third) = S::as_simd_f64s(third);
+        let [all, of_first, of_second, of_third] =
+            [simd.splat_f64s(kept), simd.splat_f64s(a), simd.splat_f64s(b), simd.splat_f64s(c)];
+        for (((sum, x), y), z) in vectors.iter_mut().zip(firsts).zip(seconds).zip(thirds) {
+            *sum = simd.add_f64s(simd.mul_f64s(all, *sum), simd.mul_f64s(of_first, *x));
+            *sum = simd.add_f64s(*sum, simd.mul_f64s(of_second, *y));
+            *sum = simd.add_f64s(*sum, simd.mul_f64s(of_third, *z));
+        }
+        for (((sum, x), y), z) in rest.iter_mut().zip(first).zip(second).zip(third) {
+            *sum = kept * *sum + a * x + b * y + c * z;
+        }
     }
 }

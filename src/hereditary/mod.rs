@@ -17,10 +17,12 @@
 //! [`RememberedField`] is a field at the start of a step and at its end, with its past. It serves the displacement, the far
 //! field of a window, and the moving frame alike.
 
+#[cfg(feature = "energies")]
 mod branch_energies;
 mod error_weight;
 mod exponential_rule;
 mod field;
+#[cfg(any(feature = "friction", feature = "states"))]
 mod group_history;
 mod history;
 mod interval;
@@ -35,11 +37,13 @@ mod step_context;
 mod time_error;
 mod weights;
 
+#[cfg(feature = "energies")]
 pub(crate) use branch_energies::BranchEnergies;
 pub(crate) use exponential_rule::{ExponentialRule, Interpolant};
 pub(crate) use field::{Field, Role};
 #[cfg(feature = "checkpoint")]
 pub(crate) use field::{interleaved, runs};
+#[cfg(any(feature = "friction", feature = "states"))]
 pub(crate) use group_history::GroupHistory;
 pub(crate) use history::History;
 pub(crate) use interval::{HistoryInputs, Interval};

@@ -9,7 +9,7 @@ use crate::hereditary::kink::Kinks;
 use crate::hereditary::step_context::{Meeting, StepContext};
 use crate::hereditary::weights::WEIGHTS;
 use crate::parallel::Rows;
-use crate::sum::{add, greatest, named_sums};
+use crate::sum::{ROUNDING, add, greatest, named_sums};
 
 /// What the error in time of a step is measured by, besides the displacement.
 #[derive(Clone, Copy)]
@@ -78,9 +78,6 @@ pub(crate) struct TimeError {
     /// What earlier steps have left, relative as the error of this one.
     pub(crate) lasting: f64,
 }
-
-/// Rounding of a difference of displacements, relative to these.
-const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 impl History {
     /// The estimated error of the step tried; 0 where too few steps before it are known.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::definiteness::least_eigenvalue;
 use super::influence::indices;
-use super::{Body, Ends, InfluenceKernel, Layout, Love, MEMORY_WHILE_MADE, Remainder, Strip, magnitude, wave_number};
+use super::{Body, Ends, InfluenceKernel, Layout, Love, MEMORY_WHILE_MADE, Strip, magnitude, wave_number};
 use crate::axis::Axis;
 use crate::error::{KernelError, Result, count_within, within};
 use crate::{Grid, memory};
@@ -38,27 +38,6 @@ impl InfluenceKernel {
             operators: Default::default(),
             facts: Default::default(),
         }
-    }
-
-    /// The kernel of the same body on a grid of other cells and the same periods; `None` of coefficients of a user,
-    /// which belong to cells.
-    pub(crate) fn on_other_cells(&self, grid: &Grid) -> Option<Result<InfluenceKernel>> {
-        let along = self.periodic.iter().position(|&periodic| periodic).map(|axis| Axis::BOTH[axis]);
-        Some(match (self.body, self.periodic, along, self.datum) {
-            (Body::HalfSpace, [true, true], ..) => InfluenceKernel::periodic(grid),
-            (Body::HalfSpace, _, Some(along), Some(datum)) => InfluenceKernel::periodic_along(grid, along, datum),
-            (Body::HalfSpace, ..) => InfluenceKernel::half_space(grid),
-            (Body::Layer(layer), [true, true], ..) => InfluenceKernel::layer_periodic(grid, layer),
-            (Body::Layer(layer), _, Some(along), datum) => {
-                InfluenceKernel::layer_periodic_along(grid, layer, along, datum)
-            }
-            (Body::Layer(layer), ..) => InfluenceKernel::layer(grid, layer),
-            (Body::User, [true, true], ..) => {
-                let response = Arc::clone(&self.response);
-                Ok(InfluenceKernel::new(grid, Body::User, [true; 2], move |k| response(k)))
-            }
-            (Body::User, ..) => return None,
-        })
     }
 
     /// The kernel of an elastic half-space (Eq. 6 of the [paper](crate::paper)): Love's coefficients, right to 1e-14
@@ -121,7 +100,7 @@ impl InfluenceKernel {
     pub fn periodic_along(grid: &Grid, along: Axis, datum: f64) -> Result<InfluenceKernel> {
         let (axis, across) = along.and_other();
         let strip = strip(grid, across, datum)?;
-        Ok(InfluenceKernel::strips(grid, Body::HalfSpace, axis, (strip, Some(datum)), Vec::new()))
+        Ok(InfluenceKernel::strips(grid, Body::HalfSpace, axis, (strip, Some(datum)), |_, _| 0.0))
     }
 
     /// A line contact, in plane strain: a grid of N × 1 cells, and pressures that do not depend on x2,
@@ -250,13 +229,12 @@ impl InfluenceKernel {
         body: Body,
         axis: usize,
         (strip, datum): (Strip, Option<f64>),
-        added: Vec<Remainder>,
+        added: impl Fn(usize, f64) -> f64 + Send + Sync + 'static,
     ) -> InfluenceKernel {
         let (cells, along, side) = (grid.cells()[axis], grid.spacing()[axis], grid.spacing()[1 - axis]);
         let response = move |at: [usize; 2]| {
             let (i, k) = (at[1 - axis], at[axis]);
-            let added = added.get(k).map_or(0.0, |remainder| remainder.on_line(i as f64 * side, side));
-            strip.at(i as f64 * side, wave_number(k, cells, along)) + added
+            strip.at(i as f64 * side, wave_number(k, cells, along)) + added(k, i as f64 * side)
         };
         InfluenceKernel { datum, ..InfluenceKernel::new(grid, body, [axis == 0, axis == 1], response) }
     }

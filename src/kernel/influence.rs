@@ -6,9 +6,8 @@ use std::sync::Arc;
 
 use super::even_spectrum::{Symbol, even_spectrum};
 use super::layout::{is_fast, waves_at};
-use super::line_load::{Strip, uniform};
-use super::love::{self, Love};
-use super::{Ends, InfluenceKernel, Layer, Layout, Remainder, Shares, wave_number};
+use super::line_load::uniform;
+use super::{Ends, InfluenceKernel, Layer, Layout, Shares, wave_number};
 use crate::Grid;
 
 /// The response \[m\] at two indices, one for each axis: a wave number of the grid along a periodic axis, a distance
@@ -17,18 +16,7 @@ use crate::Grid;
 pub(super) type Response = Arc<dyn Fn([usize; 2]) -> f64 + Send + Sync>;
 
 /// Least compliance of a wave in the approximate inverse, relative to the greatest of all waves.
-const LEAST_COMPLIANCE: f64 = 1e-8;
-
-/// From so many thicknesses on a layer displaces as its base.
-const FARTHEST: f64 = 1e12;
-
-/// What a unit pressure on a cell displaces along a row of points.
-pub(crate) struct Row {
-    /// At a distance along the row \[m\].
-    pub(crate) influence: Box<dyn Fn(f64) -> f64 + Send + Sync>,
-    /// How far the cell, and what lies below it, is from the row \[m\].
-    pub(crate) aside: f64,
-}
+pub(super) const LEAST_COMPLIANCE: f64 = 1e-8;
 
 /// What lies below the surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -147,20 +135,6 @@ impl InfluenceKernel {
         (layout, symbol)
     }
 
-    /// The near field of an operator that ends: a layout without padding, and the factor of each of its waves. It is
-    /// the operator between cells that are less than half of the grid apart; farther ones act as if they were nearer,
-    /// the other way round.
-    pub(super) fn near(&self, cells: [usize; 2], folded: [bool; 2]) -> Option<(Layout, Symbol)> {
-        if self.periodic == [true; 2] {
-            return None;
-        }
-        let layout = Layout { cells, ends: self.ends(), folded }.ending(Ends::Closed);
-        let symbol = self.symbol(layout, None);
-        let most = waves(layout).map(|[k1, k2]| symbol(k1, k2)).fold(0.0, f64::max);
-        // energies stay positive
-        Some((layout, Box::new(move |k1, k2| symbol(k1, k2).max(LEAST_COMPLIANCE * most))))
-    }
-
     /// All values of the response of a grid, and how many belong to an index along x1.
     pub(super) fn table(&self) -> (impl Iterator<Item = f64>, usize) {
         let cells = self.grid.cells();
@@ -171,63 +145,6 @@ impl InfluenceKernel {
     /// The compliance \[m\] of the wave with these absolute numbers of a body that is periodic along both axes.
     pub(crate) fn of_wave(&self, k: [usize; 2]) -> f64 {
         (self.response)(k)
-    }
-
-    /// Distance from a line load at which the displacement is zero \[m\].
-    pub(crate) fn datum(&self) -> Option<f64> {
-        self.datum
-    }
-
-    /// What a unit pressure displaces at any distance along `axis`, in rows aside of it: at the distances of cells,
-    /// or of each wave where bodies are periodic along the other axis. `None` for bodies that are periodic along the
-    /// axis, and of coefficients.
-    ///
-    /// At a `depth` below a half-space, which may be 0, or of the layer.
-    pub(crate) fn rows_along(&self, axis: usize, depth: Option<f64>) -> Option<Vec<Row>> {
-        let (spacing, cells, layer) = (self.grid.spacing(), self.grid.cells()[1 - axis], self.layer_of().copied());
-        if self.body == Body::User || self.periodic[axis] {
-            return None;
-        }
-        let below = depth.unwrap_or(0.0);
-        // the layer is a half-space beyond
-        let far = layer.map_or(0.0, |layer| FARTHEST * layer.thickness());
-        let added = |wave: Option<f64>| match (layer, wave) {
-            _ if depth.is_some() => None,
-            (Some(layer), None) => Some(Remainder::of_cells(&layer, far)),
-            (Some(layer), Some(0.0)) => Some(Remainder::of_lines(&layer, far, self.datum)),
-            (Some(layer), Some(kappa)) => Remainder::of_wave(&layer, far, kappa),
-            (None, _) => None,
-        };
-        let longest = layer.filter(|_| depth.is_none()).map_or(1.0, |layer| layer.longest_over_half_space());
-        if self.periodic[1 - axis] {
-            let datum = self.datum.or_else(|| Some(2.0 * layer?.thickness()))?;
-            let strip = Strip { side: spacing[axis], datum };
-            let row = |k: usize| {
-                let kappa = wave_number(k, cells, spacing[1 - axis]);
-                let added = added(Some(kappa));
-                let influence = move |x: f64| match &added {
-                    _ if below > 0.0 => strip.below(x, below),
-                    Some(_) if x > far => longest * strip.at(x, kappa),
-                    Some(added) => strip.at(x, kappa) + added.on_line(x, strip.side),
-                    None => strip.at(x, kappa),
-                };
-                Row { influence: Box::new(influence), aside: below }
-            };
-            return Some((0..=cells / 2).map(row).collect());
-        }
-        let (love, added) = (Arc::new(Love::new(spacing)), added(None).map(Arc::new));
-        let row = |j: usize| {
-            let (y, love, added) = (j as f64 * spacing[1 - axis], Arc::clone(&love), added.clone());
-            let at = move |x: f64| if axis == 0 { [x, y] } else { [y, x] };
-            let influence = move |x: f64| match &added {
-                _ if below > 0.0 => love::below(spacing, at(x), below),
-                Some(_) if x > far => longest * love.at(at(x)),
-                Some(added) => love.at(at(x)) + added.on_cell(at(x), spacing),
-                None => love.at(at(x)),
-            };
-            Row { influence: Box::new(influence), aside: (y - 0.5 * spacing[1 - axis]).max(0.0).hypot(below) }
-        };
-        Some((0..cells).map(row).collect())
     }
 
     /// The greatest compliance of a wave \[m\], if the mean has none.
@@ -315,63 +232,11 @@ pub(super) fn longest_side(grid: &Grid) -> f64 {
 }
 
 /// The independent waves of a layout.
-fn waves(layout: Layout) -> impl Iterator<Item = [usize; 2]> {
+pub(super) fn waves(layout: Layout) -> impl Iterator<Item = [usize; 2]> {
     indices([0, 1].map(|axis| layout.period(axis) / 2 + 1))
 }
 
 /// All pairs of indices below the `count` of each axis.
 pub(super) fn indices([n1, n2]: [usize; 2]) -> impl Iterator<Item = [usize; 2]> {
     (0..n1).flat_map(move |k1| (0..n2).map(move |k2| [k1, k2]))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::kernel::layer::Layer;
-
-    /// Between cells less than half of the grid apart, and their mirror images, the near field is the operator, on
-    /// the half-space and on a layer, whether the cells make the transform fast or not. Nowhere does it give energy
-    /// away.
-    #[test]
-    fn the_near_field_is_the_operator_nearby() {
-        for (cells, folded) in [([16, 12], [false; 2]), ([17, 23], [false; 2]), ([16, 24], [true, true])] {
-            let grid = Grid::new(cells, [1.0, 1.3]).unwrap();
-            let layer = Layer::bonded_to_rigid(0.2, 0.45).unwrap();
-            for whole in [InfluenceKernel::half_space(&grid).unwrap(), InfluenceKernel::layer(&grid, layer).unwrap()] {
-                let own = [0, 1].map(|axis| cells[axis] / if folded[axis] { 2 } else { 1 });
-                let part = Grid::new(own, [0, 1].map(|axis| grid.spacing()[axis] * own[axis] as f64)).unwrap();
-                let kernel = whole.on(&part, folded);
-                let (near, mut work_near) = kernel.near().unwrap();
-                let mut work = kernel.workspace();
-                // all that acts lies within a square of half of the grid
-                let begin = [0, 1].map(|axis| if folded[axis] { 0 } else { cells[axis] / 4 });
-                let count = [0, 1].map(|axis| cells[axis] / if folded[axis] { 4 } else { 2 });
-                let acts = |k: usize| {
-                    [k / own[1], k % own[1]]
-                        .iter()
-                        .zip(begin)
-                        .zip(count)
-                        .all(|((&i, begin), count)| i >= begin && i < begin + count)
-                };
-                let field: Vec<f64> =
-                    (0..part.len()).map(|k| if acts(k) { ((k * k + 3) as f64).sin() } else { 0.0 }).collect();
-                let (mut exact, mut found) = (vec![0.0; field.len()], vec![0.0; field.len()]);
-                kernel.apply(&field, &mut exact, &mut work);
-                work.swap(&mut work_near);
-                near.apply(&field, &mut found, &mut work);
-                let most = exact.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
-                for k in (0..field.len()).filter(|&k| acts(k)) {
-                    assert!(
-                        (exact[k] - found[k]).abs() < 1e-12 * most,
-                        "{cells:?}, {folded:?}, cell {k}: {} {}",
-                        exact[k],
-                        found[k]
-                    );
-                }
-                let waves: Vec<f64> = (0..field.len()).map(|k| ((7 * k * k + k) as f64).cos()).collect();
-                near.apply(&waves, &mut found, &mut work);
-                assert!(waves.iter().zip(&found).map(|(p, v)| p * v).sum::<f64>() > 0.0);
-            }
-        }
-    }
 }

@@ -2,7 +2,8 @@
 
 use super::constructors::{check_line, representable, strip};
 use super::influence::longest_side;
-use super::{Body, InfluenceKernel, Layer, Love, Remainder, Strip, magnitude, wave_number};
+use super::layer::{Layer, Remainder};
+use super::{Body, InfluenceKernel, Love, Strip, magnitude, wave_number};
 use crate::Grid;
 use crate::axis::Axis;
 use crate::error::{KernelError, Result, count_within, within};
@@ -12,6 +13,23 @@ const LONGEST_CELL: f64 = 1e3;
 /// Longest cell over the thickness, for layers that yield to a pressure only by being squeezed out: the middle of a
 /// long cell is not.
 const LONGEST_SQUEEZED: f64 = 2.0;
+
+impl Layer {
+    /// The kernel of this layer on cells of a grid, periodic along these axes.
+    pub(super) fn on_cells(
+        self,
+        grid: &Grid,
+        periodic: [bool; 2],
+        along: Option<Axis>,
+        datum: Option<f64>,
+    ) -> Result<InfluenceKernel> {
+        match (periodic, along) {
+            ([true, true], _) => InfluenceKernel::layer_periodic(grid, self),
+            (_, Some(along)) => InfluenceKernel::layer_periodic_along(grid, self, along, datum),
+            _ => InfluenceKernel::layer(grid, self),
+        }
+    }
+}
 
 impl InfluenceKernel {
     /// A [`Layer`], loaded on the grid alone: Love's coefficients of the half-space and, cell by cell, the integral
@@ -113,6 +131,7 @@ impl InfluenceKernel {
         let mut added = vec![Remainder::of_lines(&layer, last, datum)];
         let waves = (1..=cells / 2).map(|k| Remainder::of_wave(&layer, last, wave_number(k, cells, side)));
         added.extend(waves.map_while(|remainder| remainder));
+        let added = move |k: usize, x: f64| added.get(k).map_or(0.0, |remainder| remainder.on_line(x, strip.side));
         Ok(InfluenceKernel::strips(grid, Body::Layer(layer), axis, (strip, datum), added))
     }
 }

@@ -9,9 +9,7 @@
 //!
 //! v(x) = −(2/π) ∫ ln(|x − s|/d) p(s) ds   (Johnson, Contact Mechanics, 1985, section 2.3).
 
-use std::f64::consts::{FRAC_1_PI, FRAC_2_PI, TAU};
-
-use crate::quadrature::GaussLegendre;
+use std::f64::consts::{FRAC_2_PI, TAU};
 
 /// Step of the trapezoidal rule for ∫ f(cosh t) dt: the integrand being analytic up to π/2 from the real axis, its
 /// error is e^(−π²/step) of the coefficient of a cell on itself.
@@ -20,9 +18,6 @@ const STEP: f64 = 0.25;
 const LAST: f64 = 42.0;
 /// e^(−x) underflows for larger x.
 const UNDERFLOW: f64 = 745.0;
-
-/// So many sides from a cell below the surface six points are enough.
-const FAR: f64 = 8.0;
 
 /// Coefficients of cells of equal length along the axis along which the load varies \[m\].
 #[derive(Debug, Clone, Copy)]
@@ -52,18 +47,6 @@ impl Strip {
         }
         let term = |x: f64| if x == 0.0 { 0.0 } else { x * (x.abs() / self.datum).ln() };
         -FRAC_2_PI * (term(x + a) - term(x - a) - self.side)
-    }
-
-    /// The displacement at a distance x from the middle of a cell that lies at a `depth` below the points \[m\], for
-    /// the mean: −(1/π) ∫ ln((s² + depth²)/d²) ds.
-    pub(super) fn below(&self, x: f64, depth: f64) -> f64 {
-        let a = 0.5 * self.side;
-        let ln = |x: f64| 2.0 * (x.hypot(depth) / self.datum).ln();
-        if x.hypot(depth) > FAR * self.side {
-            return -FRAC_1_PI * a * GaussLegendre::new(6).sum(|s| ln(x + a * s));
-        }
-        let primitive = |x: f64| x * (ln(x) - 2.0) + 2.0 * depth * (x / depth).atan();
-        -FRAC_1_PI * (primitive(x + a) - primitive(x - a))
     }
 }
 
@@ -102,6 +85,7 @@ mod tests {
     use approx::assert_abs_diff_eq;
 
     use super::*;
+    use crate::quadrature::GaussLegendre;
 
     /// ln |s| over the cell by quadrature in pieces that shrink towards the load.
     fn by_quadrature(side: f64, i: usize, f: impl Fn(f64) -> f64) -> f64 {

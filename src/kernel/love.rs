@@ -25,13 +25,13 @@ use crate::quadrature::GaussLegendre;
 #[derive(Debug, Clone)]
 pub(crate) struct Love {
     /// Whether x1 is the longer side of the cell.
-    long_first: bool,
+    pub(super) long_first: bool,
     /// Half sides of the cell in units of `scale`, the longer one first.
-    half: [f64; 2],
+    pub(super) half: [f64; 2],
     /// Half of the longer side \[m\].
-    scale: f64,
+    pub(super) scale: f64,
     /// Quadrature rules by number of points, each with the distance from which it is exact to rounding.
-    rules: Vec<(f64, GaussLegendre)>,
+    pub(super) rules: Vec<(f64, GaussLegendre)>,
 }
 
 impl Love {
@@ -66,49 +66,10 @@ impl Love {
             &self.rules.iter().find(|(reach, _)| nearest >= *reach).unwrap_or(&self.rules[self.rules.len() - 1]).1;
         self.scale * b / PI * rule.sum(|s| rod_potential(x, y + b * s, a))
     }
-
-    /// The displacement at the distance x along x1 and y along x2 from the middle of the cell \[m\].
-    pub(crate) fn at(&self, distance: [f64; 2]) -> f64 {
-        let [x, y] = distance.map(|own| own.abs() / self.scale);
-        let (x, y) = if self.long_first { (x, y) } else { (y, x) };
-        let [a, b] = self.half;
-        if y.hypot((x - a).max(0.0)) >= FAR * b {
-            let rule = &self.rules[2].1;
-            return self.scale * b / PI * rule.sum(|s| rod_potential(x, y + b * s, a));
-        }
-        // the closed form: near the cell little cancels
-        let term = |x: f64, y: f64| if x == 0.0 { 0.0 } else { x * (y / x.abs()).asinh() };
-        let corner = |x: f64, y: f64| term(x, y) + term(y, x);
-        self.scale / PI * (corner(x + a, y + b) - corner(x - a, y + b) - corner(x + a, y - b) + corner(x - a, y - b))
-    }
 }
-
-/// The displacement over a cell that lies at a `depth` below the points, at a distance along each axis \[m\]:
-/// (1/π) ∬ dx dy / √(x² + y² + depth²).
-pub(super) fn below(sides: [f64; 2], [x, y]: [f64; 2], depth: f64) -> f64 {
-    let half = sides.map(|side| 0.5 * side);
-    let distance = x.hypot(y).hypot(depth);
-    if distance > DEEP * sides[0].max(sides[1]) {
-        let rule = GaussLegendre::new(6);
-        let over = |t: f64, s: f64| 1.0 / (x + half[0] * t).hypot(y + half[1] * s).hypot(depth);
-        return half[0] * half[1] / PI * rule.sum(|t| rule.sum(|s| over(t, s)));
-    }
-    let corner = |x: f64, y: f64| {
-        let r = x.hypot(y).hypot(depth);
-        x * (y / x.hypot(depth)).asinh() + y * (x / y.hypot(depth)).asinh() - depth * (x * y / (depth * r)).atan()
-    };
-    let [a, b] = half;
-    (corner(x + a, y + b) - corner(x - a, y + b) - corner(x + a, y - b) + corner(x - a, y - b)) / PI
-}
-
-/// So many longer sides from a cell below the points six points along each side are enough.
-const DEEP: f64 = 8.0;
-
-/// Six points along the shorter side are enough from so many of its halves on.
-const FAR: f64 = 12.0;
 
 /// ∫ ds / √((x − s)² + y²) over |s| < a, for x ≥ 0: the potential of a rod.
-fn rod_potential(x: f64, y: f64, a: f64) -> f64 {
+pub(super) fn rod_potential(x: f64, y: f64, a: f64) -> f64 {
     let (r1, r2) = ((x + a).hypot(y), (x - a).hypot(y));
     // r1 + r2 − 2a, each bracket free of cancellation: r − d = y²/(r + d) for r² = d² + y²
     let excess = y * y / (r1 + (x + a)) + y * y / (r2 + (x - a).abs()) + 2.0 * (x - a).max(0.0);

@@ -20,18 +20,33 @@ mod constructors;
 mod definiteness;
 mod even_spectrum;
 mod influence;
+#[cfg(feature = "layers")]
 mod layer;
+#[cfg(not(feature = "layers"))]
+#[path = "no_layer.rs"]
+mod layer;
+#[cfg(feature = "layers")]
 mod layered;
 mod layout;
 mod line_load;
 mod lines;
 mod love;
+#[cfg(feature = "adhesion")]
+mod near;
+#[cfg(feature = "observe")]
+mod other_cells;
+#[cfg(feature = "sliding")]
+mod rows;
 mod transform;
 
-pub(crate) use influence::{HalfSpace, Row};
+pub(crate) use influence::HalfSpace;
 pub use layer::Layer;
 pub(crate) use layout::{fast_length, images, waves_at};
 pub(crate) use line_load::wave_number;
+#[cfg(feature = "adhesion")]
+pub(crate) use near::{Mean, PeriodInverse};
+#[cfg(feature = "sliding")]
+pub(crate) use rows::Row;
 pub(crate) use transform::{SpectralOperator, TransformWorkspace};
 
 use std::sync::{Arc, OnceLock};
@@ -39,9 +54,7 @@ use std::sync::{Arc, OnceLock};
 use crate::error::{Error, KernelError, Result, exact_length, finite};
 use crate::parallel::Rows;
 use crate::{Grid, memory};
-use even_spectrum::Symbol;
 use influence::{Body, Response, magnitude};
-use layer::Remainder;
 use layout::{Ends, Layout};
 use line_load::Strip;
 use love::Love;
@@ -103,14 +116,6 @@ struct Facts {
 #[derive(Debug, Clone)]
 pub struct Workspace(pub(crate) TransformWorkspace);
 
-impl Workspace {
-    /// Swaps the buffers, but for those between the passes of a transform, which remain here.
-    pub(crate) fn swap(&mut self, other: &mut Workspace) {
-        std::mem::swap(&mut self.0, &mut other.0);
-        self.0.swap_tiles(&mut other.0);
-    }
-}
-
 /// The influence operator on a part of a grid, and on its mirror images along folded axes.
 #[derive(Debug, Clone)]
 pub(crate) struct LocalKernel {
@@ -120,32 +125,6 @@ pub(crate) struct LocalKernel {
     rows: Rows,
     folded: [bool; 2],
     operator: Arc<SpectralOperator>,
-}
-
-/// M, the inverse of a kernel that is periodic along both axes, or of a near field, wave by wave. A mean without
-/// compliance has a stiffness of its own.
-#[derive(Debug, Clone)]
-pub(crate) struct PeriodInverse {
-    operator: SpectralOperator,
-    own: TransformWorkspace,
-    pub(crate) mean: Mean,
-}
-
-/// What M and its kernel do to the mean of a field.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Mean {
-    /// Of M \[1/m\].
-    pub(crate) stiffness: f64,
-    /// Of its kernel \[m\].
-    pub(crate) compliance: f64,
-}
-
-impl PeriodInverse {
-    /// out ← M field.
-    pub(crate) fn apply(&mut self, field: &[f64], out: &mut [f64], lender: &mut Workspace) {
-        out.copy_from_slice(field);
-        self.operator.apply_beside(out, &mut self.own, &mut lender.0);
-    }
 }
 
 impl InfluenceKernel {
@@ -341,33 +320,6 @@ impl LocalKernel {
         (inverse, work)
     }
 
-    /// The inverse of a kernel that is periodic along both axes, or of the near field.
-    pub(crate) fn period_inverse(&self) -> PeriodInverse {
-        let (cells, folded) = (self.rows.cells(), self.folded);
-        let near = self.whole.near(cells, folded).map(|(layout, near)| {
-            let mean = near(0, 0);
-            let inverse: Symbol = Box::new(move |k1, k2| 1.0 / near(k1, k2));
-            (layout, inverse, mean)
-        });
-        let (layout, symbol, compliance) = near.unwrap_or_else(|| {
-            let (layout, inverse) = self.whole.inverse(cells, folded);
-            (layout, inverse, self.whole.of_wave([0, 0]))
-        });
-        let mean = Mean { stiffness: symbol(0, 0), compliance };
-        let operator = SpectralOperator::new(layout, Shares::new(&layout, &self.rows), symbol);
-        let own = operator.workspace_sharing(&self.operator);
-        PeriodInverse { operator, own, mean }
-    }
-
-    /// The near field, [`InfluenceKernel::near`], and its work space without tiles: those of [`LocalKernel::workspace`]
-    /// suffice. `None` of periodic bodies.
-    pub(crate) fn near(&self) -> Option<(LocalKernel, Workspace)> {
-        let (layout, symbol) = self.whole.near(self.rows.cells(), self.folded)?;
-        let operator = SpectralOperator::new(layout, Shares::new(&layout, &self.rows), symbol);
-        let work = Workspace(operator.workspace_sharing(&self.operator));
-        Some((LocalKernel { operator: Arc::new(operator), ..self.clone() }, work))
-    }
-
     /// Axes along which the cells are one whole period.
     pub(crate) fn periodic_axes(&self) -> [bool; 2] {
         [0, 1].map(|axis| self.whole.periodic_axes()[axis] && !self.folded[axis])
@@ -385,10 +337,5 @@ impl LocalKernel {
     /// [`InfluenceKernel::convolve`] for fields of the right length.
     pub(crate) fn apply(&self, pressure: &[f64], displacement: &mut [f64], work: &mut Workspace) {
         self.operator.apply(pressure, displacement, &mut work.0);
-    }
-
-    /// [`LocalKernel::apply`] in place.
-    pub(crate) fn apply_in_place(&self, field: &mut [f64], work: &mut Workspace) {
-        self.operator.apply_in_place(field, &mut work.0);
     }
 }

@@ -23,9 +23,13 @@
 //! ([`Repeated`](crate::geometry::Repeated)).
 
 mod counter;
+#[cfg(feature = "motion")]
 mod path;
+#[cfg(feature = "motion")]
 mod travel;
 
 pub use counter::CounterMotion;
+#[cfg(feature = "motion")]
 pub use path::{FnPath, Path, Straight};
+#[cfg(feature = "motion")]
 pub use travel::Travel;

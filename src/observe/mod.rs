@@ -13,20 +13,19 @@
 //! nothing. Each visits the cells once; observations that need displacement or gap cost as much as
 //! [`displacement`](crate::fields::Fields::displacement). [`SubsurfaceStress`] states the cost of the stress.
 
-pub(crate) mod area;
 mod asymmetry;
 mod distribution;
 pub(crate) mod grid_convergence;
-pub(crate) mod mesh_error;
+mod mesh_error;
+mod of_fields;
 mod patches;
 pub(crate) mod profile;
-pub(crate) mod resolution;
 #[cfg(feature = "stress")]
 mod stress;
 
+pub use crate::fields::mesh_error::MeshError;
 pub use asymmetry::Asymmetry;
 pub use distribution::Distribution;
-pub use mesh_error::MeshError;
 pub use patches::{Patch, Patches};
 pub use profile::LineProfile;
 #[cfg(feature = "stress")]

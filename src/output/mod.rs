@@ -40,6 +40,7 @@ mod metadata;
 mod npy;
 #[cfg(feature = "npy")]
 mod npz;
+mod one_rank;
 mod series;
 #[cfg(all(feature = "npy", feature = "states"))]
 mod states;

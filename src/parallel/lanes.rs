@@ -141,39 +141,3 @@ pub(crate) fn cut<T, const M: usize>(fields: [&mut [T]; M], at: usize) -> [[&mut
     let before = halves.each_mut().map(|(before, _)| std::mem::take(before));
     [before, halves.map(|(_, after)| after)]
 }
-
-/// Sets `target` to `kept` target + Σ weight column, summed in this order: bitwise as one element after the other.
-/// Written in vectors, since builds that are optimised a little only find none.
-pub(crate) fn combine(target: &mut [f64], kept: f64, weights: [f64; 3], columns: [&[f64]; 3]) {
-    Arch::new().dispatch(Combination { target, kept, weights, columns });
-}
-
-struct Combination<'a> {
-    target: &'a mut [f64],
-    kept: f64,
-    weights: [f64; 3],
-    columns: [&'a [f64]; 3],
-}
-
-impl WithSimd for Combination<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let Combination { target, kept, weights: [a, b, c], columns: [first, second, third] } = self;
-        let (vectors, rest) = S::as_mut_simd_f64s(target);
-        let (firsts, first) = S::as_simd_f64s(first);
-        let (seconds, second) = S::as_simd_f64s(second);
-        let (thirds, third) = S::as_simd_f64s(third);
-        let [all, of_first, of_second, of_third] =
-            [simd.splat_f64s(kept), simd.splat_f64s(a), simd.splat_f64s(b), simd.splat_f64s(c)];
-        for (((sum, x), y), z) in vectors.iter_mut().zip(firsts).zip(seconds).zip(thirds) {
-            *sum = simd.add_f64s(simd.mul_f64s(all, *sum), simd.mul_f64s(of_first, *x));
-            *sum = simd.add_f64s(*sum, simd.mul_f64s(of_second, *y));
-            *sum = simd.add_f64s(*sum, simd.mul_f64s(of_third, *z));
-        }
-        for (((sum, x), y), z) in rest.iter_mut().zip(first).zip(second).zip(third) {
-            *sum = kept * *sum + a * x + b * y + c * z;
-        }
-    }
-}

@@ -62,6 +62,7 @@
 //! are of the same ranks.
 
 mod exchange;
+#[cfg(any(feature = "checkpoint", feature = "output"))]
 mod file;
 mod lanes;
 mod ranks;
@@ -69,7 +70,7 @@ mod rows;
 mod threads;
 mod tile;
 
-pub(crate) use lanes::{BAND_CELLS, Task, combine, cut, for_each_band, for_each_share, fork, in_pool, join, lanes};
+pub(crate) use lanes::{BAND_CELLS, Task, cut, for_each_band, for_each_share, fork, in_pool, join, lanes};
 pub(crate) use rows::{Rows, part};
 pub(crate) use tile::{TILE, rows_in_a_tile};
 

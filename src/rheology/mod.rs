@@ -71,6 +71,7 @@ mod kelvin_voigt;
 mod kww;
 #[cfg(feature = "laws")]
 pub mod laws;
+#[cfg(feature = "data")]
 pub mod library;
 mod log_creep;
 mod material;
@@ -78,18 +79,23 @@ mod maxwell;
 mod mittag_leffler;
 mod own_series;
 mod power_law;
+mod ratio;
 mod series;
-mod shifted;
 mod slow_creep;
 mod spectrum;
 #[cfg(feature = "data")]
 mod table;
-mod temperature_history;
+#[cfg(feature = "temperature")]
+mod temperature;
+#[cfg(not(feature = "temperature"))]
+#[path = "no_temperature.rs"]
+mod temperature;
 mod tension;
-mod time_temperature;
 mod zener;
 
-pub use crate::error::{MaterialError, Place, TableError};
+pub use crate::error::MaterialError;
+#[cfg(feature = "data")]
+pub use crate::error::{Place, TableError};
 pub use burgers::Burgers;
 pub use elastic::Elastic;
 pub use fit::{FitReport, FitSample, FitWarning, MaterialFunction};
@@ -105,17 +111,19 @@ pub(crate) use material::{Compressibility, Volume};
 pub use maxwell::Maxwell;
 pub use power_law::PowerLaw;
 pub use series::CreepSeries;
-pub use shifted::ShiftedRheology;
 pub use slow_creep::SlowCreep;
 #[cfg(feature = "checkpoint")]
 pub(crate) use spectrum::SavedRelaxation;
 pub use spectrum::{CreepSpectrum, GeneralizedKelvin, RelaxationSpectrum};
 #[cfg(feature = "data")]
 pub use table::{Experiment, Isotherm, MasterCurve, Measurements, Units};
-pub use temperature_history::TemperatureHistory;
+#[cfg(feature = "data")]
+pub(crate) use temperature::GAS_CONSTANT;
+#[cfg(not(feature = "temperature"))]
+pub(crate) use temperature::TemperatureHistory;
+#[cfg(feature = "temperature")]
+pub use temperature::{ShiftedRheology, TemperatureHistory, TimeTemperature};
 pub use tension::Tension;
-pub(crate) use time_temperature::GAS_CONSTANT;
-pub use time_temperature::TimeTemperature;
 pub use zener::Zener;
 
 use std::fmt::Debug;

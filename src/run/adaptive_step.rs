@@ -3,13 +3,13 @@
 use crate::contact::step::Attempt;
 use crate::contact::step::error_in_time::error_in_time;
 use crate::contact::{Step, StepReport, ViscoelasticContact};
-use crate::error::{AdhesionError, Error, ErrorKind, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::events;
-use crate::hereditary::{StepContext, TimeError, WEIGHTS};
+use crate::hereditary::{StepContext, TimeError};
 use crate::load::Load;
 use crate::run::Contact;
 use crate::run::control::Course;
-use crate::run::halves::{Divided, Halves, add_work, greater};
+use crate::run::halves::is_pulled_off;
 use crate::run::outlook::excess;
 use crate::run::passage::Span;
 use crate::run::step_control::{Proposal, StepControl};
@@ -76,9 +76,9 @@ pub(super) fn adaptive_step(
 }
 
 /// The search for a step that its error allows.
-struct StepSearch<'a> {
-    control: &'a mut StepControl,
-    course: &'a Course<'a>,
+pub(super) struct StepSearch<'a> {
+    pub(super) control: &'a mut StepControl,
+    pub(super) course: &'a Course<'a>,
     now: f64,
     /// The latest end of the step.
     stop: f64,
@@ -88,17 +88,17 @@ struct StepSearch<'a> {
     /// How often the solver has failed to converge.
     failures: u32,
     /// The work of steps that do not count.
-    wasted: [usize; 2],
+    pub(super) wasted: [usize; 2],
 }
 
 /// A step that was tried.
-struct Tried {
-    attempt: Attempt,
-    error: TimeError,
+pub(super) struct Tried {
+    pub(super) attempt: Attempt,
+    pub(super) error: TimeError,
     /// By how much the error exceeds the estimate of the whole step.
-    excess: f64,
+    pub(super) excess: f64,
     /// The errors of its [halves](Halves): the first is the state, and the second is the attempt.
-    halves: Option<[TimeError; 2]>,
+    pub(super) halves: Option<[TimeError; 2]>,
 }
 
 impl StepSearch<'_> {
@@ -131,10 +131,10 @@ impl StepSearch<'_> {
         outlook: &StepContext,
         [straying, apart]: [f64; 2],
     ) -> Result<Tried> {
-        let StepSearch { control, course, wasted, .. } = self;
+        let StepSearch { control, wasted, .. } = self;
         let tried = contact.attempt(step);
         let ViscoelasticContact { scene, computation, .. } = &*contact;
-        let attempt = tried.inspect_err(|_| add_work(wasted, computation))?;
+        let attempt = tried.inspect_err(|_| computation.add_work(wasted))?;
         let computed = attempt.computation(computation);
         let mut error = error_in_time(scene, computed, step, outlook);
         computed.state.held.region.rows().intact()?;
@@ -147,23 +147,13 @@ impl StepSearch<'_> {
         if !contact.attracts() || resolved && error.relative > control.tolerance {
             return Ok(Tried { attempt, error, excess, halves: None });
         }
-        let mut halves = control.halves.take().unwrap_or_else(|| Box::new(Halves::new(&contact.computation.state)));
-        let divided = halves.divide(contact, step, course.histories.first(), outlook, wasted);
-        if divided.is_err() {
-            add_work(wasted, &contact.computation);
-            halves.undo(contact);
-        }
-        control.halves = Some(halves);
-        let Divided { attempt, difference, errors } = divided?;
-        let jumped = contact.passes().is_some_and(|passes| passes.jumped);
-        error.relative = greater(error.relative, difference) * if jumped { WEIGHTS.jumped } else { 1.0 };
-        Ok(Tried { attempt, error, excess, halves: Some(errors) })
+        self.in_halves(contact, step, outlook, error, excess)
     }
 
     /// Whether a shorter step may succeed where this one has failed. Where the bodies separate within it, a shorter one
     /// shows when.
     fn may_be_shorter(&mut self, error: &Error, outlook: &StepContext) -> bool {
-        if matches!(error, Error::Adhesion(AdhesionError::PulledOff { .. })) {
+        if is_pulled_off(error) {
             return self.tried - self.now > outlook.resolution;
         }
         let is_unsolved = error.kind() == ErrorKind::Convergence;
@@ -188,7 +178,7 @@ impl StepSearch<'_> {
             track.is_driven && !track.is_apart && !attracts && !presses(scene, computed, body)
         };
         if let Some(top) = control.first_top(course.histories, parts) {
-            add_work(wasted, computed);
+            computed.add_work(wasted);
             (self.stop, control.rejected) = (top, control.rejected + 1);
             return None;
         }
@@ -206,7 +196,7 @@ impl StepSearch<'_> {
         }
         events::rejected(self.tried, length, error.relative, control.tolerance);
         control.rejected += 1;
-        add_work(wasted, computed);
+        computed.add_work(wasted);
         if let Some(divided) = control.halves.as_ref().filter(|_| tried.halves.is_some()) {
             divided.undo(contact);
         }

@@ -3,13 +3,12 @@
 use std::fmt::Debug;
 #[cfg(feature = "checkpoint")]
 use std::path::Path;
-use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use crate::contact::StepReport;
 use crate::error::Result;
 use crate::fields::KeptFields;
-use crate::load::{Load, LoadHistory};
+use crate::load::Load;
 use crate::run::error_budget::ErrorBudget;
 use crate::run::histories::Histories;
 #[cfg(feature = "checkpoint")]
@@ -32,46 +31,6 @@ pub struct Course<'a> {
     pub kink: f64,
     /// Set by another thread to end the step.
     pub cancelled: Option<&'a AtomicBool>,
-}
-
-/// Fields that a run is asked for.
-#[derive(Debug, Clone, Copy)]
-pub struct FieldRequest<'a> {
-    pub history: &'a dyn LoadHistory,
-    pub accuracy: f64,
-    /// Start and end of the run.
-    pub start: f64,
-    pub until: f64,
-    /// Times at which fields are asked for.
-    pub times: &'a [f64],
-    /// Whether the run chooses its steps by their error.
-    pub is_adaptive: bool,
-}
-
-/// Times at which steps end for fields, and the tolerance of adaptive steps.
-#[derive(Debug)]
-pub struct Prepared {
-    pub stops: Vec<f64>,
-    pub tolerance: f64,
-}
-
-/// Finds fields to an accuracy.
-pub trait FieldFinder<C>: Debug + Send + Sync {
-    /// Looks at the run before its first step.
-    fn prepare(&mut self, contact: &C, request: &FieldRequest<'_>) -> Result<Prepared>;
-
-    /// Sees a step of the run, from `start` to the time of its contact.
-    fn follow(&mut self, _: &C, _: &dyn LoadHistory, _start: f64) {}
-
-    /// What has the field of a contact of the last step to the accuracy, where the contact has not; before a jump of
-    /// the load at its time, or after it. Ends where another thread sets `cancelled`.
-    fn exact_field(
-        &self,
-        contact: &C,
-        history: &dyn LoadHistory,
-        after: bool,
-        cancelled: Option<&Arc<AtomicBool>>,
-    ) -> Result<(Option<Exact<C>>, FieldReport)>;
 }
 
 /// What has a field to an accuracy.

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::observe::MeshError;
+use crate::fields::mesh_error::MeshError;
 
 /// Where the error of a run comes from, made by [`Run::error_budget`](crate::run::Run::error_budget). All
 /// errors are relative; `None` where nothing was estimated.

@@ -11,7 +11,7 @@ use crate::load::{Load, LoadHistory};
 use crate::run::autosave::Autosave;
 use crate::run::control::{Control, Course};
 use crate::run::event::Event;
-use crate::run::field::RunFields;
+use crate::run::fields::RunFields;
 use crate::run::histories::{Histories, RunHistory};
 use crate::run::progress::{Progress, RunProgress, Stepping, rounding};
 use crate::run::{Contact, OwnedOrBorrowed};

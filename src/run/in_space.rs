@@ -13,7 +13,6 @@ use crate::run::Contact;
 use crate::run::adaptive_step::adaptive_step;
 use crate::run::control::{Control, Course};
 use crate::run::error_budget::ErrorBudget;
-use crate::run::halves::Halves;
 use crate::run::histories::Histories;
 use crate::run::progress::{Progress, Stepping};
 use crate::run::step_control::StepControl;
@@ -114,8 +113,8 @@ impl Control<ViscoelasticContact> for StepControl {
     ) -> Result<(ViscoelasticContact, StepReport)> {
         let attracts = contact.attracts();
         let loads = |_: &_| histories.each().map(|history| history.checked_at(time, attracts)).collect();
-        let of_last = |halves: &&Halves| halves.middle == contact.computation.state.start.clock.time;
-        let before = self.halves.as_deref().filter(of_last).map(|halves| &halves.start);
+        let second = contact.computation.state.start.clock.time;
+        let before = self.halves.as_deref().and_then(|halves| halves.start_of(second));
         let tolerance = self.solver_tolerance(&contact.scene);
         let (found, pressed) = contact.advanced_within_step(time, tolerance, before, loads)?;
         let report = found.report(None, pressed);

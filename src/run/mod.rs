@@ -14,25 +14,31 @@ mod adaptive_step;
 #[cfg(feature = "checkpoint")]
 mod autosave;
 pub(crate) mod control;
+#[cfg(feature = "contacts")]
 pub(crate) mod doubled;
 mod error_budget;
+mod errors;
 mod event;
 mod events;
 mod extremes;
-pub(crate) mod field;
+#[cfg(feature = "states")]
+pub(crate) mod fields;
+#[cfg(not(feature = "states"))]
+#[path = "no_fields.rs"]
 mod fields;
 mod follow;
+#[cfg(feature = "adhesion")]
+mod halves;
+#[cfg(not(feature = "adhesion"))]
+#[path = "no_halves.rs"]
 mod halves;
 pub(crate) mod histories;
 mod in_space;
-pub(crate) mod judge;
 mod outlook;
 pub(crate) mod passage;
 mod past_steps;
-mod plain;
 pub(crate) mod progress;
 mod rises;
-pub(crate) mod rounded;
 mod run_scale;
 mod samples;
 #[cfg(feature = "checkpoint")]
@@ -58,8 +64,6 @@ use crate::fields::Fields;
 use crate::load::{Load, LoadHistory};
 use crate::rheology::TemperatureHistory;
 use control::Control;
-use doubled::Doubled;
-use plain::Plain;
 use progress::Progress;
 
 /// A contact that is advanced in time: in space ([`ViscoelasticContact`](crate::ViscoelasticContact)), on elastic
@@ -90,7 +94,7 @@ use progress::Progress;
 /// ```
 ///
 /// # A contact of your own
-/// Five methods are required. Adaptive steps of a run are then taken whole and in two halves, of which the halves are
+/// Needs the feature `contacts`. Five methods are required. Adaptive steps of a run are then taken whole and in two halves, of which the halves are
 /// kept; how far both are apart tells the error ([`Contact::difference`]). A spring beside a dashpot, stepped
 /// implicitly:
 ///
@@ -276,10 +280,16 @@ pub trait Contact: Clone + Debug + Send + Sync + 'static {
     }
 
     /// Progress and control of a run that begins here, or that continues from this saved contact.
+    #[cfg(feature = "contacts")]
     #[doc(hidden)]
     fn lead(&mut self, stepping: Stepping, until: f64) -> (Progress, Box<dyn Control<Self>>) {
-        (Progress::begin(self.time(), stepping), Box::new(Doubled::<Self, Plain>::new(self, stepping, until)))
+        doubled::lead(self, stepping, until)
     }
+
+    /// Progress and control of a run that begins here, or that continues from this saved contact.
+    #[cfg(not(feature = "contacts"))]
+    #[doc(hidden)]
+    fn lead(&mut self, stepping: Stepping, until: f64) -> (Progress, Box<dyn Control<Self>>);
 }
 
 /// A value that a run borrows as `B` or owns as `O`.

@@ -7,11 +7,12 @@ use std::sync::{Arc, OnceLock};
 use num_complex::Complex64;
 
 use super::coefficients::{RowOfCells, Rules};
+use super::coverage;
 use super::creep::Creep;
 use super::layer_on_base::LayerOnBase;
 use super::operator::{Coefficients, MovingBodies};
 use crate::contact::Warnings;
-use crate::error::{Result, SlidingError, coverage};
+use crate::error::{Result, SlidingError};
 use crate::fft::{real_rows, wave_numbers};
 use crate::kernel::InfluenceKernel;
 use crate::numeric::EULER;

@@ -7,11 +7,12 @@ use num_complex::Complex64;
 use super::bodies::Bodies;
 use super::creep::Creep;
 use super::layer_on_base::{LayerOnBase, THINNEST};
-use super::{SteadySliding, gmres};
+use super::{SteadySliding, coverage, gmres};
 use crate::contact::{Builder, Frame, Limits, Scene, Warnings};
-use crate::equilibrium::{Ground, Held, Region};
-use crate::error::{Result, SlidingError, Special, coverage};
+use crate::equilibrium::{Ground, Held, Indenter, Region};
+use crate::error::{Result, SlidingError, Special};
 use crate::fields::View;
+use crate::geometry::{Gap, Missed};
 use crate::kernel::HalfSpace;
 use crate::memory;
 use crate::motion::CounterMotion;
@@ -105,6 +106,13 @@ fn on_base(scene: &Scene, creep: &Creep, base: &Material) -> Result<LayerOnBase>
 }
 
 impl Builder {
+    /// Whether a creeping counter-body slides or rolls in a steady motion:
+    /// [`Builder::build_sliding`] needs to know. Steps do not, in which bodies that both creep roll
+    /// ([`motion`](crate::motion)).
+    pub fn counter_motion(self, motion: CounterMotion) -> Builder {
+        Builder { counter_motion: Some(motion), ..self }
+    }
+
     /// A contact in steady motion, for [`SteadySliding::at`]: it takes the parts of
     /// [`Builder::build`]. All fields take the whole grid.
     ///
@@ -166,6 +174,17 @@ impl Builder {
         let times = (self.grid.len() as u64).div_ceil(own.computed_cells.max(1) as u64);
         let periodic = self.kernel.as_ref().map_or([false; 2], |kernel| kernel.periodic_axes());
         Ok(own.total().saturating_mul(times).saturating_add(bytes(self.grid.cells(), periodic)))
+    }
+
+    /// The constants of a contact in one process, its indenter, and what the grid misses of the waves of its shapes.
+    fn parts(mut self) -> Result<(Scene, Indenter, Missed)> {
+        self.validate()?;
+        let gaps: Vec<_> = std::mem::take(&mut self.gaps).into_iter().map(|(_, gap)| gap).collect::<Result<_>>()?;
+        let bodies = gaps.len();
+        let indenter = Indenter::new(Gap::new(gaps, &self.grid)?, bodies);
+        let (scene, _) = self.scene(bodies)?;
+        let missed = self.missed(&scene);
+        Ok((scene, indenter, missed))
     }
 
     fn sliding(mut self, base: Option<Material>, modulus: Option<Creep>) -> Result<SteadySliding> {

@@ -17,10 +17,11 @@ use faer::Mat;
 use num_complex::Complex64;
 
 use super::coefficients::{RowOfCells, Rules};
+use super::coverage;
 use super::creep::Creep;
 use super::operator::Coefficients;
 use crate::Layer;
-use crate::error::{Result, coverage, within};
+use crate::error::{Result, within};
 use crate::kernel::InfluenceKernel;
 use crate::quadrature::GaussLegendre;
 use crate::rheology::Material;

@@ -152,3 +152,13 @@ impl SlidingTable {
         &self.0
     }
 }
+
+impl Load {
+    /// The load with its force, if it is one, divided by a factor.
+    fn with_force_over(self, factor: f64) -> Load {
+        match self {
+            Load::Force { normal, tilt } => Load::Force { normal: normal / factor, tilt },
+            Load::Approach { .. } | Load::Spring { .. } => self,
+        }
+    }
+}

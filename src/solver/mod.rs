@@ -12,6 +12,7 @@ mod problem;
 mod resting_position;
 mod rigid_motion;
 mod row_segments;
+#[cfg(feature = "observe")]
 mod stiffness;
 mod trace;
 
@@ -21,6 +22,7 @@ pub(crate) use extension::{Extension, HaloExchange, HaloRows};
 pub(crate) use outcome::{Outcome, PENETRATION_SLACK};
 pub(crate) use problem::{Counts, Problem, Solution, Solve, Stop};
 pub(crate) use rigid_motion::{Freedom, Gram, ModeCoefficients, Modes, RigidMotion, dot};
+#[cfg(feature = "observe")]
 pub(crate) use stiffness::{FLAT_PUNCH_TOLERANCE, flat_punch};
 
 use bands::BandSums;

@@ -6,7 +6,11 @@
 //! twice as long, and curves through every second contact, measure what both leave; steps are halved and contacts
 //! added until that is a small part of what was asked.
 
+use std::sync::Arc;
+
 use crate::contact::ViscoelasticContact;
+use crate::elastic::ElasticContact;
+use crate::equilibrium::Ground;
 use crate::error::{Error, Result};
 use crate::hereditary::Interpolant;
 use crate::load::{Load, LoadHistory, Tilt};
@@ -26,6 +30,21 @@ const OF_CHANGE: f64 = 0.15;
 /// Greatest number of contacts that are added to the curve for a field, and times that the field is found anew.
 const MOST_ADDED: usize = 64;
 const MOST_ATTEMPTS: u32 = 12;
+
+impl ViscoelasticContact {
+    /// An elastic contact of this compliance with the same rigid bodies, solved to `tolerance` on the whole grid, but
+    /// for mirror images.
+    ///
+    /// # Errors
+    /// If there is no memory for it.
+    fn elastic(&self, compliance: f64, tolerance: f64) -> Result<ElasticContact> {
+        let own = &self.scene.ground;
+        let settings = own.settings.with_tolerance(tolerance).with_window(false);
+        let ground = Ground { settings, attraction: None, softening: 0.0, ..own.clone() };
+        let indenter = Arc::clone(&self.computation.state.held.indenter);
+        ElasticContact::new(Arc::new(ground), compliance, indenter, self.missed)
+    }
+}
 
 /// The fields of a run in space.
 #[derive(Debug)]

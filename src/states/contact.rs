@@ -6,7 +6,6 @@ use crate::contact::{Estimated, Figures, Limits, StepReport, Warnings};
 use crate::elastic::ElasticContact;
 use crate::error::{Result, StatesError, non_negative};
 use crate::hereditary::{ExponentialRule, Interpolant};
-use crate::kernel::Layer;
 use crate::load::Load;
 use crate::rheology::{Material, TemperatureHistory};
 use crate::solver::RigidMotion;
@@ -65,7 +64,7 @@ impl StatesContact {
     pub fn new(states: &Arc<ElasticStates>, material: &Material) -> Result<StatesContact> {
         material.validate()?;
         if let Some(poisson) = states.poisson {
-            Layer::check_material(poisson, &material.poisson_ratios().collect::<Vec<_>>())?;
+            material.check_ratio_of(poisson)?;
         }
         let creep = material.spectrum_for("a contact on elastic states")?;
         let (states, limits, interpolant) = (Arc::clone(states), Limits::of(material), Interpolant::CorrectedLinear);
@@ -89,8 +88,12 @@ impl StatesContact {
     /// With a temperature that changes: the material creeps in reduced time.
     #[must_use]
     pub fn with_temperature(mut self, temperature: TemperatureHistory) -> StatesContact {
-        Arc::make_mut(&mut self.scene).temperature = Some(temperature);
+        self.set_temperature(Some(&temperature));
         self
+    }
+
+    pub(super) fn set_temperature(&mut self, temperature: Option<&TemperatureHistory>) {
+        Arc::make_mut(&mut self.scene).temperature = temperature.cloned();
     }
 
     /// With steps that are linear and stay so, as

@@ -10,7 +10,7 @@ use std::path::Path;
 use crate::contact::StepReport;
 use crate::error::Result;
 use crate::load::{Load, LoadHistory};
-use crate::run::judge::{FIRST_STEP, Judge, MAX_GROWTH, Record, SMALL, Tries, WITHOUT_ORDER};
+use crate::run::doubled::judge::{FIRST_STEP, Judge, MAX_GROWTH, Record, SMALL, Tries, WITHOUT_ORDER};
 use crate::run::passage::{Passage, Span};
 #[cfg(feature = "checkpoint")]
 use crate::run::progress::Progress;

@@ -51,6 +51,7 @@ mod friction;
 mod gradient;
 mod levels;
 mod outside;
+mod passing;
 mod pressed;
 mod profile;
 mod reach;

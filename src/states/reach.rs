@@ -110,9 +110,7 @@ impl Loading<'_> {
         start: f64,
     ) -> Result<StatesContact> {
         let mut contact = StatesContact::new(states, self.material)?.with_interpolant(interpolant);
-        if let Some(temperature) = self.temperature {
-            contact = contact.with_temperature(temperature.clone());
-        }
+        contact.set_temperature(self.temperature);
         if start > 0.0 {
             contact.step_to(start, start, Load::Force { normal: 0.0, tilt: states.tilt })?;
         }

@@ -7,7 +7,7 @@ use std::sync::{Mutex, PoisonError};
 use crate::contact::ViscoelasticContact;
 use crate::equilibrium::Ground;
 use crate::error::{Error, Result};
-use crate::fields::KeptFields;
+use crate::fields::{Fields, KeptFields};
 use crate::hereditary::{Interpolant, StepContext};
 use crate::load::{Load, LoadHistory};
 use crate::states::repeated::LEAST_FORCE;
@@ -174,4 +174,17 @@ fn take(
         contact.computation.state.history.reset_differences();
     }
     Ok(())
+}
+
+impl Fields<'_> {
+    /// Σ |p − p′| and Σ p over the whole grid, with the p′ of another contact of the scene. A call of all ranks.
+    fn pressure_beside(&self, other: Fields<'_>) -> [f64; 2] {
+        let ([n1, n2], own) = (self.grid().cells(), self.rows());
+        self.sum_of_rows(|i, row| {
+            let computed = if own.contains(&i) { i } else { n1 - 1 - i };
+            let others = &other.pressure()[(computed - own.start) * n2..];
+            let off = row.iter().zip(others).map(|(one, other)| (one - other).abs());
+            [off.sum(), row.iter().sum()]
+        })
+    }
 }

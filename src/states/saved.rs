@@ -11,7 +11,7 @@ use crate::contact::checkpoint::scene::{of_rule, of_text};
 use crate::contact::checkpoint::{check_clocks, malformed};
 use crate::error::{CheckpointError, Error, Result};
 use crate::file::replace;
-use crate::run::judge::Record;
+use crate::run::doubled::judge::Record;
 use crate::run::progress::Progress;
 use crate::states::contact::StatesContact;
 use crate::states::control::OnLevels;

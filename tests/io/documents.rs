@@ -85,17 +85,24 @@ fn features_of(example: &str) -> Vec<String> {
 }
 
 /// What programs name, and the feature that it needs.
-const ROOMS: [(&str, &[&str]); 10] = [
+const ROOMS: [(&str, &[&str]); 17] = [
+    ("adhesion", &["adhesion::", ".attraction("]),
     ("analytic", &["analytic::"]),
     ("checkpoint", &[".save(", "autosave_to", "resume("]),
-    ("data", &["Measurements", "MasterCurve"]),
+    ("contacts", &["impl Contact for"]),
+    ("data", &["Measurements", "MasterCurve", "library::"]),
+    ("energies", &["EnergyBalance"]),
     ("laws", &["laws::"]),
+    ("layers", &["Layer::"]),
+    ("motion", &["step_along", "step_over", "set_geometr", "Travel::"]),
+    ("observe", &[".profile(", ".patches(", "_distribution(", ".asymmetry(", "stiffness_over_modulus", "mesh_error("]),
     ("output", &["CsvHistory", "FrameSeries", "output::"]),
     ("plot", &["plot::"]),
     ("sliding", &["build_sliding", "SlidingSweep"]),
     ("states", &["ElasticStates", "StatesContact", "Sweep::new", "fields_to"]),
     ("study", &["Study::", "Accuracy::"]),
     ("surfaces", &["HeightMap", "Rough::", "RoughSpec"]),
+    ("temperature", &["TimeTemperature", "TemperatureHistory"]),
 ];
 
 /// Every page of the guides names the features of its programs, as the README does.

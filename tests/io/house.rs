@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 
 /// The modules at the top of `src`: each may use the modules above it, none below it. docs/maintainers/design.md describes them.
 const ORDER: &str = "\
-    values axis extent guide linalg dense quadrature numeric rounded sum error events ascending file input grid \
-    memory parallel fft geometry motion kernel load rheology adhesion hereditary solver analytic observe \
-    equilibrium fields elastic contact sliding run states study laws output plot";
+    values axis extent guide linalg dense quadrature numeric rounded sum error events ascending attraction file input \
+    grid memory parallel fft geometry motion kernel load rheology adhesion hereditary solver analytic equilibrium \
+    fields elastic observe contact sliding run states study laws output plot";
 
 fn files(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).unwrap() {

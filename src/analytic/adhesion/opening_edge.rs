@@ -142,8 +142,7 @@ impl OpeningEdge {
         let most = 4.0 * (least + (radius * approach.abs()).sqrt());
         let start = bisect(least, most, HALVINGS, |a| sphere.state(a)[1] < approach)[1];
         // implicit steps err by their length: twice the finer ones less the coarser ones errs by its square
-        let [coarse, fine] =
-            [STEPS, 2 * STEPS].map(|steps| self.greatest_pull(radius, [start, approach], speed, steps));
+        let [coarse, fine] = [STEPS, 2 * STEPS].map(|steps| self.greatest_pull(radius, start, approach, speed, steps));
         let [force, approach, contact_radius, edge_speed, work] = std::array::from_fn(|k| 2.0 * fine[k] - coarse[k]);
         Ok(PullOff { force, approach, contact_radius, edge_speed, work })
     }
@@ -170,7 +169,7 @@ impl OpeningEdge {
 
     /// Force, approach, contact radius, speed of the edge and work at the greatest pull, by implicit steps of the
     /// contact radius from radius and approach at rest on.
-    fn greatest_pull(&self, radius: f64, [start, at_rest]: [f64; 2], speed: f64, steps: usize) -> [f64; 5] {
+    fn greatest_pull(&self, radius: f64, start: f64, at_rest: f64, speed: f64, steps: usize) -> [f64; 5] {
         // of the relaxed body, at another work of separation
         let state = |a: f64, work: f64| Jkr(Bodies { length: radius, modulus: 1.0 / self.relaxed, work }).state(a);
         let ratio = LEAST_RADIUS.powf(1.0 / steps as f64);

@@ -2,22 +2,18 @@
 
 use std::sync::Arc;
 
-use crate::Grid;
-use crate::adhesion::{Attraction, laws, softening};
 use crate::contact::builder::LocalGap;
 use crate::contact::builder::memory::windowed;
 use crate::contact::builder::shared_gap::SharedGap;
 use crate::contact::read::limits::Limits;
+use crate::contact::step::attraction::resolved_softening;
 use crate::contact::{Builder, Computation, Frame, Memory, Scene, Settings, State, ViscoelasticContact};
-use crate::elastic::ElasticContact;
 use crate::equilibrium::ground::check_bodies;
 use crate::equilibrium::indenter::even_axes_of;
 use crate::equilibrium::{Ground, Indenter, Region};
-use crate::error::{AdhesionError, Error, Result, Special, coverage};
-use crate::error::{length, or_failure_of, positive};
+use crate::error::{Error, Result, Special, coverage};
 use crate::geometry::{Gap, Missed};
 use crate::hereditary::History;
-use crate::kernel::Layer;
 use crate::parallel::{Ranks, Rows};
 use crate::rheology::Material;
 
@@ -68,19 +64,8 @@ impl Builder {
         })
     }
 
-    /// The constants of a contact in one process, its indenter, and what the grid misses of the waves of its shapes.
-    pub(crate) fn parts(mut self) -> Result<(Scene, Indenter, Missed)> {
-        self.validate()?;
-        let gaps: Vec<_> = std::mem::take(&mut self.gaps).into_iter().map(|(_, gap)| gap).collect::<Result<_>>()?;
-        let bodies = gaps.len();
-        let indenter = Indenter::new(Gap::new(gaps, &self.grid)?, bodies);
-        let (scene, _) = self.scene(bodies)?;
-        let missed = self.missed(&scene);
-        Ok((scene, indenter, missed))
-    }
-
     /// What the grid misses of the waves of the shapes.
-    fn missed(&self, scene: &Scene) -> Missed {
+    pub(crate) fn missed(&self, scene: &Scene) -> Missed {
         Missed::of(&self.waves, &self.grid, scene.ground.kernel.periodic_axes())
     }
 
@@ -164,7 +149,7 @@ impl Builder {
     }
 
     /// Rejects settings out of range, and no rigid body or too many.
-    fn validate(&self) -> Result<()> {
+    pub(crate) fn validate(&self) -> Result<()> {
         self.settings.validate()?;
         check_bodies(self.gaps.len())?;
         let specials = [
@@ -175,7 +160,7 @@ impl Builder {
     }
 
     /// The scene with so many rigid bodies, and the history, on no cells yet.
-    pub(super) fn scene(&self, bodies: usize) -> Result<(Scene, History)> {
+    pub(crate) fn scene(&self, bodies: usize) -> Result<(Scene, History)> {
         let mut material = self.material.clone().ok_or(Error::Missing { part: "material" })?;
         if let Some(other) = self.counter_body.clone() {
             material = material.against(other);
@@ -184,7 +169,7 @@ impl Builder {
         let ground = Ground::of(&self.grid, self.kernel.as_ref(), self.settings, bodies)?;
         let kernel = &ground.kernel;
         if let Some(layer) = kernel.layer_of() {
-            Layer::check_material(layer.poisson_ratio(), &material.poisson_ratios().collect::<Vec<_>>())?;
+            material.check_ratio_of(layer.poisson_ratio())?;
         }
         if let Some(times) = &self.times {
             material = times.fit(&material, self.temperature.as_ref(), self.settings.series_tolerance)?;
@@ -199,21 +184,6 @@ impl Builder {
         let scene =
             Scene { creep, ground, limits: Limits::of(&material), material, temperature: self.temperature.clone() };
         Ok((scene, history))
-    }
-}
-
-impl ViscoelasticContact {
-    /// An elastic contact of this compliance with the same rigid bodies, solved to `tolerance` on the whole grid, but
-    /// for mirror images.
-    ///
-    /// # Errors
-    /// If there is no memory for it.
-    pub(crate) fn elastic(&self, compliance: f64, tolerance: f64) -> Result<ElasticContact> {
-        let own = &self.scene.ground;
-        let settings = own.settings.with_tolerance(tolerance).with_window(false);
-        let ground = Ground { settings, attraction: None, softening: 0.0, ..own.clone() };
-        let indenter = Arc::clone(&self.computation.state.held.indenter);
-        ElasticContact::new(Arc::new(ground), compliance, indenter, self.missed)
     }
 }
 
@@ -237,43 +207,6 @@ fn assemble(
     let attracts = scene.ground.attraction.is_some();
     let computation = Computation::new(&scene, State::at_rest(indenter, region, history, attracts));
     ViscoelasticContact::new(scene, computation, missed)
-}
-
-/// Fewer cells in the zone of an attraction are refused.
-const LEAST_ZONE: f64 = 2.0;
-
-/// A zone shorter by rounding is not refused.
-const ROUNDING: f64 = 1e-9;
-
-/// The length of the zone in which an attraction of this [`softening`] acts at the edge of a contact, over the longer
-/// side of a cell. The pull-off force errs by this figure alike for all laws (docs/accuracy.md).
-pub(in crate::contact) fn cells_in_zone(softening: f64, compliance: f64, grid: &Grid) -> f64 {
-    1.0 / (longer_side(grid) * softening * compliance)
-}
-
-/// The longer side of a cell, of the sides along which there are several cells: a line contact is the same along its
-/// one cell.
-fn longer_side(grid: &Grid) -> f64 {
-    let sides = grid.spacing().into_iter().zip(grid.cells()).filter(|(_, cells)| *cells > 1);
-    sides.map(|(side, _)| side).reduce(f64::max).unwrap_or(grid.spacing()[0])
-}
-
-/// The slope at which a law softens. Rejects a law that is no attraction, and a mesh on which even the elastic
-/// response has too short a zone.
-fn resolved_softening(law: &dyn Attraction, material: &Material, grid: &Grid) -> Result<f64> {
-    let of_law = || {
-        positive("work of separation", law.work())?;
-        length("range of the attraction", law.range())?;
-        laws::usable(law).map_err(AdhesionError::Law)?;
-        Ok(softening(law))
-    };
-    let softening = or_failure_of(|| law.failure(), of_law)?;
-    let cells = cells_in_zone(softening, material.glassy_compliance()?, grid);
-    if cells >= LEAST_ZONE * (1.0 - ROUNDING) {
-        return Ok(softening);
-    }
-    let (spacing, range) = (longer_side(grid) * cells / LEAST_ZONE, law.range() * (LEAST_ZONE / cells).sqrt());
-    Err(AdhesionError::ZoneNotResolved { cells, least: LEAST_ZONE, spacing, range }.into())
 }
 
 /// The history of bodies of `material` in a frame, on no cells yet.

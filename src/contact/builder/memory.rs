@@ -87,7 +87,7 @@ impl Scene {
         let [grid, solver, kernel] = self.ground.bytes_on(region);
         let indenter = Arc::new(Indenter::new(Gap::default(), self.ground.bodies));
         let layout = State::layout(indenter, region.clone(), history, attracts);
-        let passes = if attracts { Attracted::BYTES_PER_CELL } else { 0 };
+        let passes = if attracts { Attracted::bytes_per_cell() } else { 0 };
         // the displacement at both ends of a step counts as state
         let [per_cell, of_history] = [layout.values_per_cell(), layout.history.values_per_cell() - 2].map(|n| 8 * n);
         let of_cells = |bytes: usize| u64::try_from(bytes as u128 * count as u128).unwrap_or(u64::MAX);

@@ -8,9 +8,9 @@ use std::ops::{Range, RangeInclusive};
 use std::sync::Arc;
 
 use crate::Grid;
-use crate::adhesion::Attraction;
+use crate::attraction::Attraction;
 use crate::contact::{Settings, ViscoelasticContact};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::geometry::{Geometry, Waves, evaluate};
 use crate::kernel::InfluenceKernel;
 use crate::load::LoadHistory;
@@ -22,8 +22,6 @@ use crate::rheology::{Material, TemperatureHistory};
 const SHORTEST_PART: f64 = 1e-6;
 /// Number of corners of the load that are compared.
 const MAX_CORNERS: usize = 1000;
-/// Number of temperatures among which the slowest creep of a run is sought.
-const TEMPERATURES: i32 = 64;
 
 /// The parts of a [`ViscoelasticContact`]; see [`ViscoelasticContact::builder`].
 #[derive(Debug, Clone)]
@@ -102,13 +100,6 @@ impl Builder {
         Builder { counter_body: Some(material), ..self }
     }
 
-    /// Whether a creeping counter-body slides or rolls in a steady motion:
-    /// [`Builder::build_sliding`] needs to know. Steps do not, in which bodies that both creep roll
-    /// ([`motion`](crate::motion)).
-    pub fn counter_motion(self, motion: CounterMotion) -> Builder {
-        Builder { counter_motion: Some(motion), ..self }
-    }
-
     /// The loading times \[s\] over which the material is needed, from the shortest that matters to the end of the
     /// scene, both after the load first acts. Rheologies without an exact exponential series
     /// ([`PowerLaw`](crate::rheology::PowerLaw), closures) cannot be built without it: their series is fitted over
@@ -167,41 +158,6 @@ impl Builder {
         Builder { temperature: Some(history), ..self }
     }
 
-    /// The attraction between the surfaces: loads may then pull, and hold until the bodies separate
-    /// ([`adhesion`](crate::adhesion)). A scene without one costs nothing more.
-    ///
-    /// [`ViscoelasticContact::pressure`] is the pressure of the wall, [`Fields::traction_into`](crate::fields::Fields::traction_into) the net traction, which carries
-    /// the force and displaces the bodies. The whole grid is computed, [`Settings::window`] does not count. A contact
-    /// that tries to come off under a given force fails with
-    /// [`AdhesionError::PulledOff`](crate::adhesion::AdhesionError::PulledOff); under a given approach or a spring it
-    /// comes off within a step.
-    ///
-    /// The mesh must resolve the zone in which the attraction acts, of the length E* ρ²/w, or E* over the steepest
-    /// slope of the law if that is less: with 4 cells in it the pull-off force of a sphere errs by up to 0.5 %, with
-    /// 3 by up to 2.5 %, with 2 by up to 10 %. Below 4, at the modulus that the body has reached, steps warn
-    /// ([`Warnings::COARSE_ZONE`](crate::contact::Warnings::COARSE_ZONE)); below 2, at the modulus at once, `build`
-    /// fails. A longer range at the same work of separation needs fewer cells.
-    ///
-    /// ```
-    /// use viscocontact::adhesion::{ExponentialAttraction, tabor_number};
-    /// use viscocontact::prelude::*;
-    ///
-    /// let law = ExponentialAttraction::new(0.05, 2.0e-6)?;
-    /// assert!(tabor_number(&law, 1.0e-3, 1.0e5)? > 0.5);
-    /// let mut contact = ViscoelasticContact::builder(Grid::square(64, 0.3e-3)?)
-    ///     .geometry(&Sphere::new(1.0e-3)?)
-    ///     .material(Material::incompressible(Zener::new(2.5e5, 5.0e4, 5.0e4)?))
-    ///     .attraction(law)
-    ///     .build()?;
-    /// contact.step(0.1, Load::force(0.0))?; // no load, and yet in contact
-    /// assert!(contact.contact_cells() > 0 && contact.force().abs() < 1e-12);
-    /// assert!(contact.step(0.1, Load::force(-20.0e-6))?.force < 0.0);
-    /// # Ok::<(), viscocontact::Error>(())
-    /// ```
-    pub fn attraction(self, law: impl Attraction + 'static) -> Builder {
-        Builder { attraction: Some(Arc::new(law)), ..self }
-    }
-
     /// An influence kernel, or an [`Arc`] of one that other contacts on the same grid share; without one,
     /// [`InfluenceKernel::half_space`] is made.
     pub fn kernel(self, kernel: impl Into<Arc<InfluenceKernel>>) -> Builder {
@@ -249,11 +205,7 @@ impl RunTimes {
         let (mut first, mut last) = (*self.range.start(), *self.range.end());
         if self.of_run {
             if let Some(history) = temperature {
-                let slowest = (0..=TEMPERATURES).try_fold(f64::INFINITY, |least: f64, k| {
-                    let rate = history.rate(last * f64::from(k) / f64::from(TEMPERATURES))?;
-                    Ok::<_, Error>(least.min(rate))
-                })?;
-                (first, last) = (first * slowest, history.reduced_time(0.0, last)?);
+                (first, last) = (first * history.slowest(last)?, history.reduced_time(0.0, last)?);
             }
             last = last.min(material.known_until()).max(first);
         }

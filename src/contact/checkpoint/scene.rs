@@ -3,7 +3,7 @@
 
 use std::fmt::Debug;
 
-use crate::adhesion::Attraction;
+use crate::attraction::Attraction;
 use crate::contact::{Scene, Settings, ViscoelasticContact};
 use crate::equilibrium::{Ground, Indenter, Region};
 use crate::error::CheckpointError;

@@ -56,12 +56,6 @@ impl ViscoelasticContact {
         Ok(TravelReport { step, position, from, lateral_force, power })
     }
 
-    /// Force and moments of the first body, and the parts of its motion on which they do work.
-    pub(in crate::contact) fn load_and_motion(&self) -> [[f64; 3]; 2] {
-        let ([moment1, moment2], [tilt1, tilt2]) = (self.fields().moment(), self.tilt());
-        [[self.force(), moment1, moment2], [self.approach(), tilt1, tilt2]]
-    }
-
     /// Work of the lateral motion in the last step \[J\]: the work of the pressure, Σ p Δu, less the work of force and
     /// moments, from load and motion before the step.
     fn work_along(&self, [load, motion]: [[f64; 3]; 2]) -> f64 {

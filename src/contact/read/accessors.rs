@@ -1,7 +1,6 @@
 //! Read-only accessors.
 
 use crate::Grid;
-use crate::contact::step::attraction::PassReport;
 use crate::contact::{Settings, ViscoelasticContact};
 use crate::error::{Result, coverage};
 use crate::load::Load;
@@ -75,9 +74,10 @@ impl ViscoelasticContact {
         self.fields().contact_cells()
     }
 
-    /// How the passes of the step tried last went; `None` without attraction, and before the first step.
-    pub fn passes(&self) -> Option<PassReport> {
-        self.computation.attracted.as_ref().map(|passes| passes.report)
+    /// Force and moments of the first body, and the parts of its motion on which they do work.
+    pub(in crate::contact) fn load_and_motion(&self) -> [[f64; 3]; 2] {
+        let ([moment1, moment2], [tilt1, tilt2]) = (self.fields().moment(), self.tilt());
+        [[self.force(), moment1, moment2], [self.approach(), tilt1, tilt2]]
     }
 
     /// Refuses what this contact does not cover.

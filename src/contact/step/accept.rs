@@ -32,9 +32,6 @@ impl Computation {
     }
 }
 
-/// Fewer cells resolve the zone of an attraction badly.
-pub(super) const COARSE_ZONE: f64 = 4.0;
-
 /// The warnings of the step accepted last, with all pressed cells in `reach`.
 pub(super) fn collect_warnings(
     scene: &Scene,
@@ -51,7 +48,7 @@ pub(super) fn collect_warnings(
         (Warnings::COARSE_ZONE, figures.cells_in_zone.is_some()),
         (Warnings::BEYOND_EDGE, figures.beyond_edge.is_some()),
         (Warnings::LONG_STEP, time_error > Some(LONG_STEP)),
-        (Warnings::JUMP, attracted.as_ref().is_some_and(|own| own.report.jumped)),
+        (Warnings::JUMP, attracted.as_ref().is_some_and(|own| own.jumped())),
     ];
     of_material | state.held.warnings(&scene.ground, reach, figures) | Warnings::of(&reasons)
 }

@@ -6,9 +6,7 @@ use crate::equilibrium::{Trial, Window};
 use crate::error::{Error, Result, StepError};
 use crate::geometry::Gap;
 use crate::solver::PENETRATION_SLACK;
-
-/// Rounding of the gap of a cell, relative to its summands.
-const ROUNDING: f64 = 8.0 * f64::EPSILON;
+use crate::sum::ROUNDING;
 
 /// Writes the end of a jump of compliance 0 to the trial; the displacement stays. The pressure stays if it satisfies
 /// the loads, else it vanishes if zero pressure satisfies them. Other loads are rejected.

@@ -17,8 +17,11 @@
 //! which [`ViscoelasticContact::within_step`] would need.
 
 mod accept;
+#[cfg(feature = "adhesion")]
 pub(in crate::contact) mod attraction;
-mod edge;
+#[cfg(not(feature = "adhesion"))]
+#[path = "no_attraction.rs"]
+pub(in crate::contact) mod attraction;
 pub(crate) mod error_in_time;
 mod jump;
 mod prediction;
@@ -28,7 +31,6 @@ mod retraction;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::contact::builder::build::cells_in_zone;
 use crate::contact::{Clock, Computation, Estimated, Scene, State, Step, StepReport, ViscoelasticContact};
 use crate::equilibrium::constraints::{acceptable, below_full_contact, converged, find_free_motions, validate_loads};
 use crate::equilibrium::guess::initial_guess;
@@ -36,16 +38,15 @@ use crate::equilibrium::pressed::Pressed;
 use crate::equilibrium::spring::{guess_forces, solve_with_springs};
 use crate::equilibrium::window::growth::{OnRegion, solve_on_growing_region};
 use crate::equilibrium::window::placement::{outgrown, region_for};
-use crate::equilibrium::{Edge, Equilibrium, Figures, Held, Region, RigidBodies, Trial};
-use crate::error::{AdhesionError, Error, Result, StepError, non_negative, or_failure_of};
+use crate::equilibrium::{Equilibrium, Figures, Held, Region, RigidBodies, Trial};
+use crate::error::{Error, Result, StepError, non_negative, or_failure_of};
 use crate::events;
 use crate::hereditary::{Interpolant, Interval, StepContext, TimeError};
 use crate::load::Load;
 use crate::parallel::in_pool;
 use crate::solver::{Solution, Stop};
-use accept::{COARSE_ZONE, collect_warnings};
-use attraction::AttractedStep;
-use edge::{MOST, least_beyond};
+use accept::collect_warnings;
+use attraction::{AttractedStep, coarse_zone};
 use error_in_time::error_in_time;
 use jump::jump_without_response;
 use prediction::predict_contact;
@@ -171,7 +172,7 @@ impl ViscoelasticContact {
     pub(crate) fn accept(&mut self, attempt: Attempt, step: Step<'_>, error: TimeError) -> Result<StepReport> {
         // lengths beyond 1e154 m have no squares, and so no estimate
         let estimated = step.interval.stride == [0; 2] && error.relative.is_finite();
-        let is_suspected = self.passes().is_some_and(|report| report.suspected);
+        let is_suspected = self.computation.attracted.as_ref().is_some_and(|own| own.suspects_jump());
         let again = is_suspected.then(|| (step.clone(), self.computation.state.clone()));
         let pressed = self.adopt(attempt, step, error.sizes)?;
         if let Some((step, before)) = again
@@ -205,11 +206,9 @@ impl ViscoelasticContact {
         let Equilibrium { contact_cells, solution: Solution { counts, residual, .. }, .. } = state.held.current;
         let clock: &Clock = &state.clock;
         let compliance = || scene.material.contact_compliance(clock.age().max(clock.last_dt));
-        let in_zone = || cells_in_zone(scene.ground.softening, compliance(), &scene.ground.grid);
-        let beyond_edge = self.computation.attracted.as_ref().map(|own| own.report.beyond_edge);
         let figures = Figures {
-            cells_in_zone: (scene.ground.softening > 0.0).then(in_zone).filter(|cells| *cells < COARSE_ZONE),
-            beyond_edge: beyond_edge.filter(|share| *share > least_beyond(scene)),
+            cells_in_zone: coarse_zone(scene, compliance),
+            beyond_edge: self.computation.attracted.as_ref().and_then(|own| own.beyond_edge(scene)),
             modulus: scene.limits.modulus,
             ..state.held.figures(&scene.ground, self.missed, &pressed)
         };
@@ -309,11 +308,7 @@ impl OnRegion for Computation {
         let (Computation { state, trial, attracted, .. }, ground) = (self, &scene.ground);
         let displaced = state.held.region.rows().sum(state.history.trial());
         let sum = acceptable(ground, &state.held, displaced, trial, step.request())?;
-        let share = attracted.as_ref().map_or(0.0, |own| own.report.beyond_edge);
-        if ground.settings.edge == Edge::Refuse && share > MOST {
-            let (time, lengths) = (step.interval.time, ground.grid.lengths());
-            return Err(AdhesionError::BeyondEdge { time, share, lengths }.into());
-        }
+        attracted.as_ref().map_or(Ok(()), |own| own.check_edge(scene, step))?;
         Ok(sum)
     }
 

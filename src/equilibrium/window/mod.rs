@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use crate::equilibrium::{Ground, Indenter, Region, Trial};
 use crate::geometry::Gap;
-use crate::kernel::{LocalKernel, PeriodInverse, Workspace};
+use crate::kernel::{LocalKernel, Workspace};
 use crate::solver::{ActiveSet, Outcome, Problem, Solve, Stop};
 
 /// Kernel, solver and gap on the region of a state: all of it follows from scene, region and indenter. It is rebuilt
@@ -18,10 +18,6 @@ use crate::solver::{ActiveSet, Outcome, Problem, Solve, Stop};
 pub(crate) struct Window {
     pub(crate) kernel: LocalKernel,
     pub(crate) work: Workspace,
-    /// The near field of the kernel, and its work space, where surfaces attract each other.
-    pub(crate) near: Option<(LocalKernel, Workspace)>,
-    /// The inverse of the near field, or of the kernel of periodic bodies, where surfaces attract each other.
-    pub(crate) inverse: Option<PeriodInverse>,
     solver: Box<ActiveSet>,
     /// The gap of the indenter on the region, if that is not the whole grid.
     gap: Option<Gap>,
@@ -37,10 +33,7 @@ impl Window {
         let kernel = ground.kernel.on_rows(region.grid(), region.folded(), &rows);
         let mut work = kernel.workspace();
         let solver = Box::new(ActiveSet::new(&kernel, ground.bodies, &mut work));
-        let near = ground.attraction.as_ref().and_then(|_| kernel.near());
-        let inverse = ground.attraction.as_ref().map(|_| kernel.period_inverse());
-        let mut window =
-            Window { near, inverse, work, kernel, solver, gap: None, lowest_outside: f64::INFINITY, indenter: None };
+        let mut window = Window { work, kernel, solver, gap: None, lowest_outside: f64::INFINITY, indenter: None };
         window.follow(region, indenter);
         window
     }
@@ -53,14 +46,6 @@ impl Window {
         region.cut_gap(indenter.gap(), &mut self.gap);
         self.lowest_outside = region.lowest_outside(&indenter.gap().above);
         self.indenter = Some(Arc::clone(indenter));
-    }
-
-    /// Exchanges the kernel for the near field, if there is one, and back.
-    pub(crate) fn swap_near_field(&mut self) {
-        if let Some((kernel, work)) = &mut self.near {
-            std::mem::swap(&mut self.kernel, kernel);
-            self.work.swap(work);
-        }
     }
 
     /// The gap of the indenter on the region, which the window follows.

@@ -3,10 +3,10 @@
 use std::ops::Range;
 
 use crate::Grid;
+use crate::equilibrium::resolution::Ends;
 use crate::extent::Extent;
 use crate::geometry::Gap;
 use crate::kernel::images;
-use crate::observe::resolution::Ends;
 use crate::parallel::Rows;
 use crate::solver::{Freedom, Modes};
 

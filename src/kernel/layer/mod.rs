@@ -18,14 +18,12 @@ pub(super) use remainder::Remainder;
 pub(crate) use wave::Bonded;
 use wave::Response;
 
-use crate::error::{Error, KernelError, Result, length, poisson_ratio, within};
+use crate::error::{Result, length, poisson_ratio, within};
 
 /// Ratio of the shear moduli of a layer and its base.
 const SHEAR_RATIOS: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
 /// Compliance in the mean, over the thickness, below which a layer yields mostly by being squeezed out.
 const SQUEEZED: f64 = 0.02;
-/// Mismatch of two Poisson's ratios that is not rounding.
-const SAME_POISSON: f64 = 1e-9;
 
 /// A layer of finite thickness on a base: a rubber sheet on steel, a gel on glass, a coating.
 ///
@@ -212,24 +210,6 @@ impl Layer {
             Base::Bonded => Response::bonded(self.poisson, 0.5, 0.0),
             Base::Frictionless => Response::Frictionless,
             Base::HalfSpace { shear_ratio, poisson } => Response::bonded(self.poisson, poisson, shear_ratio),
-        }
-    }
-
-    /// Rejects a material whose Poisson's ratio differs from the ratio `layer` of the layer. `bodies` are the ratios
-    /// of the bodies of a contact, `None` where the ratio is not constant.
-    pub(crate) fn check_material(layer: f64, bodies: &[Option<f64>]) -> Result<()> {
-        let refused = |what| Err(Error::from(KernelError::LayerMaterial { layer, what }));
-        match bodies {
-            [Some(nu)] if (nu - layer).abs() <= SAME_POISSON => Ok(()),
-            // to the digits that were given
-            [Some(nu)] => refused(format!(
-                "the material has the constant ratio {}: give both the same, a layer after its thickness",
-                (nu * 1e9).round() / 1e9
-            )),
-            [None] => {
-                refused("that of a material with an elastic bulk rises in time: take one of constant ratio".into())
-            }
-            _ => refused("a counter body deforms, too, as a half-space and in a time of its own: make it rigid".into()),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The stress below the surface of a half-space.
 
 mod greatest;
+mod of_fields;
 mod plane;
 mod rectangle;
 mod section;

@@ -73,13 +73,6 @@ pub(crate) struct Sample {
     pub(crate) weight: f64,
 }
 
-impl Sample {
-    /// Index of its bin on the logarithmic axis.
-    pub(crate) fn bin(&self, per_decade: f64) -> f64 {
-        (self.x.log10() * per_decade).floor()
-    }
-}
-
 /// An exponential series under construction.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct FittedSeries {

@@ -284,3 +284,10 @@ fn averaged(samples: &[Sample], decades: f64) -> Vec<Sample> {
     }
     averaged
 }
+
+impl Sample {
+    /// Index of its bin on the logarithmic axis.
+    fn bin(&self, per_decade: f64) -> f64 {
+        (self.x.log10() * per_decade).floor()
+    }
+}

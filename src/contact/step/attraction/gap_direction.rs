@@ -4,7 +4,7 @@ use super::balance::Operators;
 use super::descent::{Along, Descent, Gradient, NextDirection};
 use super::passes::InGap;
 use super::softest::{Convex, softest};
-use crate::adhesion::Attraction;
+use crate::attraction::Attraction;
 use crate::parallel::for_each_band;
 use crate::solver::Solution;
 use crate::sum::scattered;

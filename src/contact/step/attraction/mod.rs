@@ -7,6 +7,7 @@
 
 mod balance;
 mod descent;
+mod edge;
 mod energy;
 mod front;
 mod gap_direction;
@@ -15,16 +16,18 @@ mod near_field;
 mod passes;
 mod softest;
 mod split;
+mod zone;
 
 pub(in crate::contact) use passes::Attracted;
 pub use passes::PassReport;
+pub(in crate::contact::step) use zone::coarse_zone;
+pub(in crate::contact) use zone::resolved_softening;
 
-use crate::adhesion::Attraction;
+use crate::attraction::Attraction;
 use crate::contact::Edge;
 use crate::contact::Step;
 use crate::contact::scene::Scene;
 use crate::contact::state::State;
-use crate::contact::step::edge::attraction_beyond;
 use crate::equilibrium::RigidBodies;
 use crate::equilibrium::Trial;
 use crate::equilibrium::guess::{begin, fill};
@@ -33,6 +36,7 @@ use crate::equilibrium::window::Window;
 use crate::error::{Result, StepError};
 use crate::load::Load;
 use crate::solver::{Counts, Freedom, Stop};
+use edge::attraction_beyond;
 
 /// A step ends where the traction may change, over its greatest value, by less than a limit, by which the force errs: so
 /// many tolerances of the solver.
@@ -74,7 +78,7 @@ impl AttractedStep<'_> {
         begin(&self.state.held, trial, self.step.request());
         let cells = trial.gap.len();
         trial.solution.attraction.resize(cells, 0.0);
-        self.iterate(attracted.get_or_insert_with(|| Box::new(Attracted::new(cells))), window, trial)
+        self.iterate(attracted.get_or_insert_with(|| Box::new(Attracted::new(cells, &window.kernel))), window, trial)
     }
 
     fn iterate(&self, own: &mut Attracted, window: &mut Window, trial: &mut Trial) -> Result<()> {

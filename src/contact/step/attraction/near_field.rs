@@ -43,14 +43,14 @@ impl AttractedStep<'_> {
         trial: &mut Trial,
         counts: &mut Counts,
     ) -> Result<()> {
-        let Some(mut inverse) = window.inverse.take() else { return Err(self.not_converged(own, f64::INFINITY)) };
+        let Some(mut inverse) = own.inverse.take() else { return Err(self.not_converged(own, f64::INFINITY)) };
         self.begin_in_gap(window, trial);
         (own.softness, own.exactness, own.softest) = (0.0, 1.0, None);
-        let (near, balance) = (window.near.is_some(), self.balance(window, &inverse));
+        let (near, balance) = (own.near.is_some(), self.balance(window, &inverse));
         let operators = Operators { balance, inverse: &mut inverse, window, counts };
-        let mut descent = Descent { problem: self, operators, own, trial };
+        let mut descent = Descent { problem: self, operators, own: &mut *own, trial };
         let solved = if near { descent.run_in_rounds() } else { descent.run() };
-        window.inverse = Some(inverse);
+        own.inverse = Some(inverse);
         solved
     }
 
@@ -123,10 +123,10 @@ impl Descent<'_> {
     /// Computes with N in the place of K.
     fn with_near_field<T>(&mut self, compute: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.operators.counts.convolutions;
-        self.operators.window.swap_near_field();
+        self.own.swap_near_field(self.operators.window);
         let done = compute(self);
-        let Operators { window, counts, .. } = &mut self.operators;
-        window.swap_near_field();
+        self.own.swap_near_field(self.operators.window);
+        let counts = &mut self.operators.counts;
         counts.preconditioner_applications += self.problem.near_price() * (counts.convolutions - before);
         counts.convolutions = before;
         done

@@ -2,6 +2,7 @@
 
 use crate::contact::state::State;
 use crate::equilibrium::window::Window;
+use crate::kernel::{LocalKernel, PeriodInverse, Workspace};
 use crate::solver::Solution;
 
 /// Each half of a smooth step releases a quarter of what the whole does, and one half a jump.
@@ -26,6 +27,10 @@ pub(crate) struct Attracted {
     pub(super) looks: bool,
     pub(super) softest: Option<f64>,
     pub(crate) report: PassReport,
+    /// The near field of the kernel, and its work space; `None` of periodic bodies.
+    pub(super) near: Option<(LocalKernel, Workspace)>,
+    /// The inverse of the near field, or of the kernel of periodic bodies.
+    pub(super) inverse: Option<PeriodInverse>,
     /// The end of a step that was [split](super::split).
     pub(super) end: Option<Box<State>>,
 }
@@ -107,9 +112,11 @@ impl PassReport {
 
 impl Attracted {
     /// Bytes for each cell, with s of the trial.
-    pub(in crate::contact) const BYTES_PER_CELL: usize = 8 * 7;
+    pub(in crate::contact) fn bytes_per_cell() -> usize {
+        8 * 7
+    }
 
-    pub(super) fn new(cells: usize) -> Attracted {
+    pub(super) fn new(cells: usize, kernel: &LocalKernel) -> Attracted {
         let field = || vec![0.0; cells];
         Attracted {
             in_gap: InGap { direction: field(), image: field(), lift: field(), traction: field() },
@@ -120,6 +127,8 @@ impl Attracted {
             looks: true,
             softest: None,
             report: PassReport::default(),
+            near: kernel.near(),
+            inverse: Some(kernel.period_inverse()),
             end: None,
         }
     }
@@ -140,6 +149,23 @@ impl Attracted {
     /// Takes a part of the last change into the far field.
     pub(super) fn relax(&mut self, part: f64) {
         self.far.iter_mut().zip(&self.change).for_each(|(far, change)| *far += part * change);
+    }
+
+    /// Exchanges the kernel of the window for the near field, if there is one, and back.
+    pub(super) fn swap_near_field(&mut self, window: &mut Window) {
+        if let Some((kernel, work)) = &mut self.near {
+            std::mem::swap(&mut window.kernel, kernel);
+            window.work.swap(work);
+        }
+    }
+
+    /// Whether surfaces snapped within the last step, and whether they may have.
+    pub(in crate::contact::step) fn jumped(&self) -> bool {
+        self.report.jumped
+    }
+
+    pub(in crate::contact::step) fn suspects_jump(&self) -> bool {
+        self.report.suspected
     }
 
     /// |z − s| at the end of a step that was solved, at its start, and at the start of the step before.

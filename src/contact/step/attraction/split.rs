@@ -20,6 +20,11 @@ const LEFT: f64 = 0.16;
 const COARSE: f64 = 1e-2;
 
 impl ViscoelasticContact {
+    /// How the passes of the step tried last went; `None` without attraction, and before the first step.
+    pub fn passes(&self) -> Option<PassReport> {
+        self.computation.attracted.as_ref().map(|passes| passes.report)
+    }
+
     /// Looks whether surfaces snapped within the step that was accepted last. The state is as it was.
     ///
     /// # Errors

@@ -4,6 +4,10 @@
 //! contact. What happens within a step and is over at its end does not show there: so the control looks at the load
 //! within the step, and ends steps at its events.
 
+pub(crate) mod judge;
+mod plain;
+mod rounded;
+
 #[cfg(feature = "checkpoint")]
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -15,12 +19,11 @@ use crate::run::Contact;
 use crate::run::control::{Control, Course};
 use crate::run::error_budget::ErrorBudget;
 use crate::run::histories::Histories;
-use crate::run::judge::{FIRST_STEP, Judge, MAX_GROWTH, Record, Tries};
 use crate::run::passage::{AT_START, Passage, Span};
-#[cfg(feature = "checkpoint")]
-use crate::run::progress::Progress;
-use crate::run::progress::{SAME_TIME, Stepping};
-use crate::run::rounded::Rounded;
+use crate::run::progress::{Progress, SAME_TIME, Stepping};
+use judge::{FIRST_STEP, Judge, MAX_GROWTH, Record, Tries};
+use plain::Plain;
+use rounded::Rounded;
 
 /// Rounding of times: no step is shorter than this part of the time.
 const SHORTEST: f64 = 8.0 * f64::EPSILON;
@@ -191,6 +194,11 @@ impl<C: Contact, J: Judge<C>> Doubled<C, J> {
         J::copy(middle, halves);
         to(halves, end)
     }
+}
+
+/// Progress and control of the run of a contact of a user's own.
+pub(super) fn lead<C: Contact>(contact: &C, stepping: Stepping, until: f64) -> (Progress, Box<dyn Control<C>>) {
+    (Progress::begin(contact.time(), stepping), Box::new(Doubled::<C, Plain>::new(contact, stepping, until)))
 }
 
 fn unless_cancelled(flag: Option<&AtomicBool>) -> Result<()> {

@@ -1,14 +1,13 @@
 //! Observations of a contact: functions of `observe` applied to its fields.
 
+use crate::Axis;
 use crate::equilibrium::Held;
 use crate::error::{Convergence, Error, Result, StepError, coverage, finite};
 use crate::fields::Fields;
 use crate::linalg::solve_normal_equations;
-use crate::observe::area::PressedCells;
 use crate::observe::profile::line_through;
 use crate::observe::{Asymmetry, Distribution, LineProfile, Patches};
 use crate::solver::{FLAT_PUNCH_TOLERANCE, flat_punch};
-use crate::{Axis, memory};
 
 /// Share of a motion, by its square, that is taken for dependent on the others: of a body that tilts on two cells.
 const DEPENDENT: f64 = 1e-9;
@@ -23,25 +22,6 @@ struct Punches {
 }
 
 impl Fields<'_> {
-    /// Area of contact \[m²\].
-    ///
-    /// Near the edge of a smooth contact the pressure rises with the root of the distance, so that p² extrapolates to
-    /// the edge within a fraction of a cell. The area is the area of the polygons through these points. Where the
-    /// pressure does not fall towards the edge, or the indenter has no surface beyond it, as at the rim of a punch,
-    /// the contact ends with the cell. Measured on spheres: 2e-3 of the area at 64² cells and 5e-4 at 256², where
-    /// counting cells ([`Fields::contact_cells`]) errs by 1.5e-2 and 4e-3. Where contact grows by creep, the newest
-    /// cells are stiffer than older ones, and the pressure follows the root only within them: then the area errs by
-    /// up to a few per cent at 128² cells. Where surfaces [attract](crate::adhesion) each other, contact is where the
-    /// wall presses; its pressure follows the root within the zone of the attraction, and the area errs by 1.5 % with
-    /// 6 cells in the zone, and by 0.5 % with 12. A call of all [ranks](crate::parallel) that share out the rows.
-    pub fn contact_area(&self) -> f64 {
-        let Held { region, .. } = self.held;
-        if self.contact_cells() == 0 {
-            return 0.0;
-        }
-        if region.is_shared() { self.shared_area() } else { self.pressed().area() }
-    }
-
     /// Normal stiffness of the contact over the contact modulus \[m\]: dW/dω = E* times this while the contact area
     /// stays as it is; with 1/C(0) it is the response to a jump, with 1/C(t) the response to a step held for t. 2a
     /// for a circle of radius a. It depends on the area alone, not on the material; the electrical and thermal
@@ -172,19 +152,6 @@ impl Fields<'_> {
         Ok(Punches { fields, matrix })
     }
 
-    /// Mean pressure over the contact \[Pa\]: force over [`contact_area`](Fields::contact_area); 0 without
-    /// contact. The force includes the [attraction](crate::adhesion), also beyond the contact.
-    pub fn mean_pressure(&self) -> f64 {
-        let area = self.contact_area();
-        if area > 0.0 { self.force() / area } else { 0.0 }
-    }
-
-    /// Greatest pressure of any cell \[Pa\]; 0 without contact.
-    pub fn max_pressure(&self) -> f64 {
-        let Held { region, current, .. } = self.held;
-        region.rows().greatest(crate::sum::greatest(&current.solution.pressure))
-    }
-
     /// The distribution of the pressure \[Pa\] over all cells of the grid, in `bins` between 0 and the greatest
     /// pressure. [`Distribution::share_at_zero`] is the share out of contact.
     ///
@@ -302,22 +269,12 @@ impl Fields<'_> {
         Ok(Asymmetry::new(self.grid(), self.pressure(), self.kernel().periodic_axes(), about))
     }
 
-    /// The gap of every cell \[m\].
-    pub(crate) fn gap(&self) -> Result<Vec<f64>> {
-        let mut gap = memory::field("the gap", self.pressure().len(), 0.0)?;
-        self.gap_into(&mut gap)?;
-        Ok(gap)
-    }
-
-    fn pressed(&self) -> PressedCells<'_> {
-        PressedCells {
-            grid: self.grid(),
-            first: None,
-            periodic: self.kernel().periodic_axes(),
-            pressure: self.pressure(),
-            gap: &self.held.indenter.gap().above,
-            extent: self.extent_of_contact(),
-        }
+    /// The values of a field along a line of cells, of all ranks.
+    fn line_of(&self, field: &[f64], along: Axis, line: usize) -> Result<Vec<f64>> {
+        let [n1, n2] = self.grid().cells();
+        let [rows, columns] = if along == Axis::X1 { [0..n1, line..line + 1] } else { [line..line + 1, 0..n2] };
+        let brought = self.bring(field, None, rows.clone(), columns)?;
+        Ok(brought.iter().flat_map(|line| rows.clone().flat_map(|row| line.row(row))).copied().collect())
     }
 }
 

@@ -1,13 +1,15 @@
 //! The attraction beyond the edge of the grid, which is not computed.
 
-use crate::adhesion::Attraction;
-use crate::contact::Scene;
+use super::Attracted;
+use crate::attraction::Attraction;
+use crate::contact::{Edge, Scene, Step};
 use crate::equilibrium::Region;
+use crate::error::{AdhesionError, Result};
 use crate::solver::Solution;
 
 /// Attraction beyond the edge that pulls by more than this part of the force is refused, and warned of from this
 /// part, or the tolerance of the solver, on.
-pub(super) const MOST: f64 = 0.05;
+const MOST: f64 = 0.05;
 const LEAST: f64 = 1e-3;
 /// The rate at which attraction falls towards an edge is taken over this part of the grid.
 const PART: usize = 16;
@@ -45,7 +47,19 @@ pub(super) fn attraction_beyond(scene: &Scene, law: &dyn Attraction, region: &Re
     area * beyond / (area * tractions).max(law.energy(0.0) * length1.min(length2))
 }
 
-/// From what part on the attraction beyond the edge is warned of.
-pub(super) fn least_beyond(scene: &Scene) -> f64 {
-    LEAST.max(scene.ground.settings.tolerance)
+impl Attracted {
+    /// The part of the force that is left out beyond the edge, where it is warned of.
+    pub(in crate::contact::step) fn beyond_edge(&self, scene: &Scene) -> Option<f64> {
+        Some(self.report.beyond_edge).filter(|share| *share > LEAST.max(scene.ground.settings.tolerance))
+    }
+
+    /// Refuses a step that leaves out too much.
+    pub(in crate::contact::step) fn check_edge(&self, scene: &Scene, step: &Step<'_>) -> Result<()> {
+        let (ground, share) = (&scene.ground, self.report.beyond_edge);
+        if ground.settings.edge == Edge::Refuse && share > MOST {
+            let (time, lengths) = (step.interval.time, ground.grid.lengths());
+            return Err(AdhesionError::BeyondEdge { time, share, lengths }.into());
+        }
+        Ok(())
+    }
 }

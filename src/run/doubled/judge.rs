@@ -117,7 +117,7 @@ pub(crate) struct Tries<C> {
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Record<J> {
     /// The load that acts, and the one along the surface; unknown before the first step.
-    pub(super) loads: Vec<Load>,
+    pub(in crate::run) loads: Vec<Load>,
     pub(crate) tolerance: f64,
     pub(crate) start: f64,
     pub(crate) until: f64,
@@ -131,16 +131,16 @@ pub(crate) struct Record<J> {
     pub(crate) by_force: bool,
     pub(crate) greatest: [f64; 2],
     /// Times at which the load of the run bends, unknown before it was looked at, and its maximum.
-    pub(super) bends: Option<Vec<f64>>,
+    pub(in crate::run) bends: Option<Vec<f64>>,
     pub(crate) greatest_load: f64,
     /// The same of what acts along the surface.
-    pub(super) bends_along: Vec<f64>,
-    pub(super) greatest_along: f64,
+    pub(in crate::run) bends_along: Vec<f64>,
+    pub(in crate::run) greatest_along: f64,
     /// Loads below this one are lost in rounding.
     pub(crate) least_load: f64,
     /// Maximum error of an adaptive step.
-    pub(super) worst: Option<f64>,
-    pub(super) rejected: u64,
+    pub(in crate::run) worst: Option<f64>,
+    pub(in crate::run) rejected: u64,
     pub(crate) own: J,
 }
 
@@ -159,7 +159,7 @@ impl<J> Record<J> {
 
     /// Looks at the load of the run, which fails where there is none. A load that the contact has no size for fails
     /// the step to it.
-    pub(super) fn look<C: Contact>(&mut self, contact: &C, history: &dyn LoadHistory) -> Result<()>
+    pub(in crate::run) fn look<C: Contact>(&mut self, contact: &C, history: &dyn LoadHistory) -> Result<()>
     where
         J: Judge<C>,
     {

@@ -5,10 +5,12 @@
 //! halves, which are kept. Their error is the whole difference where the rule has the order one, the least that is
 //! left there, and a third of it at the order two of most steps. Half of it counts.
 
+mod search;
+
 use crate::contact::step::Attempt;
 use crate::contact::step::error_in_time::{error_in_time, least_sizes};
 use crate::contact::{Computation, State, Step, ViscoelasticContact};
-use crate::error::Result;
+use crate::error::{AdhesionError, Error, Result};
 use crate::hereditary::{Interval, StepContext, TimeError, WEIGHTS};
 use crate::load::LoadHistory;
 
@@ -16,30 +18,30 @@ use crate::load::LoadHistory;
 #[derive(Debug, Clone)]
 pub struct Halves {
     /// The state at its start.
-    pub(super) start: State,
+    start: State,
     /// The time at its middle.
-    pub(super) middle: f64,
+    middle: f64,
     /// z − s, u and v at the end of the whole step.
     whole: [Vec<f64>; 3],
 }
 
 /// A step whose first half is the state, and whose second half was tried.
-pub(super) struct Divided {
-    pub(super) attempt: Attempt,
+struct Divided {
+    attempt: Attempt,
     /// By how much they differ from the whole step, relative as [`TimeError::relative`].
-    pub(super) difference: f64,
+    difference: f64,
     /// The errors of each.
-    pub(super) errors: [TimeError; 2],
+    errors: [TimeError; 2],
 }
 
 impl Halves {
-    pub(super) fn new(state: &State) -> Halves {
+    fn new(state: &State) -> Halves {
         let field = || vec![0.0; state.held.region.len()];
         Halves { start: state.clone(), middle: f64::NAN, whole: [field(), field(), field()] }
     }
 
     /// Takes the first half of a step that was tried, and tries the second, which takes the place of the `step`.
-    pub(super) fn divide(
+    fn divide(
         &mut self,
         contact: &mut ViscoelasticContact,
         step: &mut Step<'_>,
@@ -48,7 +50,7 @@ impl Halves {
         wasted: &mut [usize; 2],
     ) -> Result<Divided> {
         self.keep(&contact.computation);
-        add_work(wasted, &contact.computation);
+        contact.computation.add_work(wasted);
         let passes = |contact: &ViscoelasticContact| contact.passes().unwrap_or_default();
         let (time, from, of_whole) = (step.interval.time, contact.time(), passes(contact));
         self.middle = from + 0.5 * (time - from);
@@ -57,7 +59,7 @@ impl Halves {
         let first = Step { interval: until(contact, step, self.middle)?, ..first };
         let attempt = contact.attempt(&first)?;
         let of_first = error_in_time(&contact.scene, &contact.computation, &first, outlook);
-        add_work(wasted, &contact.computation);
+        contact.computation.add_work(wasted);
         let of_first_half = passes(contact);
         contact.adopt(attempt, first, of_first.sizes)?;
         step.interval = until(contact, step, time)?;
@@ -73,6 +75,11 @@ impl Halves {
     /// Goes back to the start of the step.
     pub(super) fn undo(&self, contact: &mut ViscoelasticContact) {
         contact.go_to(&self.start);
+    }
+
+    /// Its start, where the second half begins at this time.
+    pub(super) fn start_of(&self, second: f64) -> Option<&State> {
+        (self.middle == second).then_some(&self.start)
     }
 
     fn keep(&mut self, tried: &Computation) {
@@ -101,19 +108,18 @@ impl Halves {
     }
 }
 
+/// Whether a step failed because its load pulls the bodies off.
+pub(super) fn is_pulled_off(error: &Error) -> bool {
+    matches!(error, Error::Adhesion(AdhesionError::PulledOff { .. }))
+}
+
 /// The interval from now to `time` of a part of a step.
 fn until(contact: &ViscoelasticContact, whole: &Step<'_>, time: f64) -> Result<Interval> {
     let part = contact.request(time, time - contact.time(), whole.loads, whole.tolerance)?;
     Ok(Interval { interpolant: whole.interval.interpolant, ..part.interval })
 }
 
-/// Adds the convolutions and preconditioner applications of a step that does not count.
-pub(super) fn add_work(work: &mut [usize; 2], tried: &Computation) {
-    let counts = tried.trial.solution.counts;
-    *work = [work[0] + counts.convolutions, work[1] + counts.preconditioner_applications];
-}
-
 /// The greater of two errors; NaN, which is an overflow, where one is.
-pub(super) fn greater(one: f64, other: f64) -> f64 {
+fn greater(one: f64, other: f64) -> f64 {
     if one.is_nan() || one > other { one } else { other }
 }

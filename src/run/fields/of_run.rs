@@ -2,22 +2,14 @@
 
 use std::sync::{Mutex, PoisonError};
 
+use super::{FieldFinder, FieldRequest, MOST_FIELDS, Prepared, RunFields};
 use crate::error::{Result, count_within, within};
 use crate::run::Contact;
-use crate::run::control::{Exact, FieldFinder, FieldReport, FieldRequest, Prepared};
-use crate::run::error_budget::ErrorBudget;
-use crate::run::field::{MOST_FIELDS, RunFields};
+use crate::run::control::{Exact, FieldReport};
 use crate::run::follow::Run;
 use crate::run::progress::Stepping;
 
 impl<'a, C: Contact> Run<'a, C> {
-    /// The errors of the run so far, by their source. That of the mesh of a contact in space is
-    /// [measured](crate::fields::Fields::mesh_error) by this call, in the present state.
-    pub fn error_budget(&self) -> ErrorBudget {
-        let mesh = self.contact.in_space().and_then(|fields| fields.mesh_error().unwrap_or_default());
-        ErrorBudget { field: self.worst_field(), mesh, ..self.control.worst() }
-    }
-
     /// Asks for fields to an accuracy.
     pub(crate) fn ask_for(mut self, finder: Box<dyn FieldFinder<C>>, accuracy: f64) -> Result<Run<'a, C>> {
         let bodies = self.histories.count();
@@ -28,7 +20,7 @@ impl<'a, C: Contact> Run<'a, C> {
     }
 
     /// Finds out how the fields of the run are found, before its first step.
-    pub(super) fn prepare_fields(&mut self) -> Result<()> {
+    pub(in crate::run) fn prepare_fields(&mut self) -> Result<()> {
         let Some(fields) = self.fields.as_mut().filter(|fields| !fields.is_prepared) else { return Ok(()) };
         let (mut times, mut time) = (Vec::new(), self.progress.start.next_down());
         while let Some(next) = self.sampled.after(time).filter(|next| *next <= self.until && times.len() <= MOST_FIELDS)
@@ -47,13 +39,17 @@ impl<'a, C: Contact> Run<'a, C> {
     }
 
     /// Shows the step just taken, from `start` on, to what finds the fields.
-    pub(super) fn show_step(&mut self, start: f64) {
+    pub(in crate::run) fn show_step(&mut self, start: f64) {
         let Some(fields) = self.fields.as_mut() else { return };
         fields.finder.follow(&self.contact, self.histories.first(), start);
     }
 
     /// What has the field of a contact of the last step to the accuracy, where it has not itself.
-    pub(super) fn exact_field(&self, contact: &C, after: bool) -> Result<(Option<Exact<C>>, Option<FieldReport>)> {
+    pub(in crate::run) fn exact_field(
+        &self,
+        contact: &C,
+        after: bool,
+    ) -> Result<(Option<Exact<C>>, Option<FieldReport>)> {
         let Some(fields) = self.fields.as_ref().filter(|fields| fields.is_prepared) else { return Ok((None, None)) };
         let (exact, report) =
             fields.finder.exact_field(contact, self.histories.first(), after, self.cancelled.as_ref())?;
@@ -65,12 +61,16 @@ impl<'a, C: Contact> Run<'a, C> {
     }
 
     /// The greatest error of the fields so far.
-    fn worst_field(&self) -> Option<f64> {
+    pub(in crate::run) fn worst_field(&self) -> Option<f64> {
         *self.fields.as_ref()?.worst.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// [`Run::exact_field`] at a time within the last step.
-    pub(super) fn exact_within_step(&self, contact: &C, time: f64) -> Result<(Option<Exact<C>>, Option<FieldReport>)> {
+    pub(in crate::run) fn exact_within_step(
+        &self,
+        contact: &C,
+        time: f64,
+    ) -> Result<(Option<Exact<C>>, Option<FieldReport>)> {
         self.exact_field(contact, self.last.is_none_or(|(_, last)| time < last.time || last.dt == 0.0))
     }
 }

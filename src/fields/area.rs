@@ -2,8 +2,11 @@
 
 use std::ops::Range;
 
-use crate::Grid;
+use crate::equilibrium::Held;
+use crate::error::Result;
 use crate::extent::Extent;
+use crate::fields::Fields;
+use crate::{Grid, memory};
 
 /// Weights of the two estimates of the end of contact between a cell in contact and a cell out of contact: the straight
 /// line through p² of the last two cells, which the coarse pressure of the last cell pulls inwards, and the parabola
@@ -156,5 +159,57 @@ impl PressedCells<'_> {
         };
         let (i, j) = (usize::try_from(i).ok()?, usize::try_from(wrap(1, n2)).ok()?);
         (i < rows && j < n2).then_some(i * n2 + j)
+    }
+}
+
+impl Fields<'_> {
+    /// Area of contact \[m²\].
+    ///
+    /// Near the edge of a smooth contact the pressure rises with the root of the distance, so that p² extrapolates to
+    /// the edge within a fraction of a cell. The area is the area of the polygons through these points. Where the
+    /// pressure does not fall towards the edge, or the indenter has no surface beyond it, as at the rim of a punch,
+    /// the contact ends with the cell. Measured on spheres: 2e-3 of the area at 64² cells and 5e-4 at 256², where
+    /// counting cells ([`Fields::contact_cells`]) errs by 1.5e-2 and 4e-3. Where contact grows by creep, the newest
+    /// cells are stiffer than older ones, and the pressure follows the root only within them: then the area errs by
+    /// up to a few per cent at 128² cells. Where surfaces [attract](crate::adhesion) each other, contact is where the
+    /// wall presses; its pressure follows the root within the zone of the attraction, and the area errs by 1.5 % with
+    /// 6 cells in the zone, and by 0.5 % with 12. A call of all [ranks](crate::parallel) that share out the rows.
+    pub fn contact_area(&self) -> f64 {
+        let Held { region, .. } = self.held;
+        if self.contact_cells() == 0 {
+            return 0.0;
+        }
+        if region.is_shared() { self.shared_area() } else { self.pressed().area() }
+    }
+
+    /// Mean pressure over the contact \[Pa\]: force over [`contact_area`](Fields::contact_area); 0 without
+    /// contact. The force includes the [attraction](crate::adhesion), also beyond the contact.
+    pub fn mean_pressure(&self) -> f64 {
+        let area = self.contact_area();
+        if area > 0.0 { self.force() / area } else { 0.0 }
+    }
+
+    /// Greatest pressure of any cell \[Pa\]; 0 without contact.
+    pub fn max_pressure(&self) -> f64 {
+        let Held { region, current, .. } = self.held;
+        region.rows().greatest(crate::sum::greatest(&current.solution.pressure))
+    }
+
+    /// The gap of every cell \[m\].
+    pub(crate) fn gap(&self) -> Result<Vec<f64>> {
+        let mut gap = memory::field("the gap", self.pressure().len(), 0.0)?;
+        self.gap_into(&mut gap)?;
+        Ok(gap)
+    }
+
+    fn pressed(&self) -> PressedCells<'_> {
+        PressedCells {
+            grid: self.grid(),
+            first: None,
+            periodic: self.kernel().periodic_axes(),
+            pressure: self.pressure(),
+            gap: &self.held.indenter.gap().above,
+            extent: self.extent_of_contact(),
+        }
     }
 }

@@ -7,6 +7,9 @@ use crate::numeric::root;
 use crate::quadrature::GaussLegendre;
 use crate::rheology::TimeTemperature;
 
+/// Number of temperatures among which the slowest creep of a run is sought.
+const TEMPERATURES: i32 = 64;
+
 /// A temperature that changes in time, the same everywhere in the bodies.
 ///
 /// Where all relaxation times share the shift factor a_T, a body at T(t) creeps as at the reference temperature, in
@@ -165,12 +168,19 @@ impl TemperatureHistory {
     }
 
     /// dξ/dt.
-    pub(crate) fn rate(&self, time: f64) -> Result<f64> {
+    fn rate(&self, time: f64) -> Result<f64> {
         let aged = match self.ageing {
             Some(Ageing { rate, reference, start }) => (positive("age", start + time)? / reference).powf(rate),
             None => 1.0,
         };
         Ok(1.0 / (self.law.shift_factor(self.at(time))? * aged))
+    }
+
+    /// The slowest rate at which the reduced time passes until `last`.
+    pub(crate) fn slowest(&self, last: f64) -> Result<f64> {
+        (0..=TEMPERATURES).try_fold(f64::INFINITY, |least: f64, k| {
+            Ok(least.min(self.rate(last * f64::from(k) / f64::from(TEMPERATURES))?))
+        })
     }
 
     /// The time–temperature law.
