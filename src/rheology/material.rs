@@ -5,6 +5,9 @@ use crate::UserError;
 use crate::error::{Error, MaterialError, Result, poisson_ratio, positive, within};
 use crate::rheology::{CreepSpectrum, FitReport, RelaxationSpectrum, Rheology, Tension, is_known, may_follow};
 
+#[cfg(any(feature = "friction", feature = "sliding", feature = "states"))]
+mod pair;
+
 /// A rheology in shear and the bulk response: together they give the contact creep compliance C(t),
 /// with C = 1/E* = (1 − ν)/2G for an elastic body.
 ///
@@ -334,19 +337,6 @@ impl Material {
         let found = of_bodies.find(|&value| !may_follow(value, value)).map(|value| (value, value));
         let (value, previous) = found.unwrap_or((glassy, 0.0));
         Err(self.failure().map_or(MaterialError::InvalidCompliance { time: 0.0, value, previous }.into(), Error::User))
-    }
-
-    /// Whether it is two bodies of one material.
-    pub(crate) fn is_pair(&self) -> Result<bool> {
-        let [one, other] = self.apart();
-        let is_alike = one.poisson_ratios().eq(other.poisson_ratios());
-        Ok(is_alike && one.contact_spectrum()? == other.contact_spectrum()?)
-    }
-
-    /// The same without the other body, and the other one alone.
-    pub(crate) fn apart(&self) -> [Material; 2] {
-        let (own, others) = self.bodies.split_at(1.min(self.bodies.len()));
-        [own, others].map(|bodies| Material { bodies: bodies.to_vec() })
     }
 
     /// [`Material::contact_spectrum`], which `what` needs.
