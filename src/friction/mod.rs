@@ -9,6 +9,7 @@
 //! and tangential loads: ν = ½ on a rigid body, or two bodies of one material. On elastic states
 //! ([`StatesContact::with_friction`](crate::states::StatesContact)) shear in one direction takes microseconds.
 
+mod by_motion;
 mod contact;
 mod kernel;
 mod limit;

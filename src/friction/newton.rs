@@ -60,15 +60,13 @@ const FORCING: f64 = 0.1;
 const MOST_GRADIENTS: usize = 150;
 /// Displacements below this part of what friction could cause are not resolved further.
 const NEGLIGIBLE: f64 = 1e-3;
-/// Loads that grow do not grow by smaller parts.
-const LEAST_PART: f64 = 0.02;
 /// What is left of a residual by rounding, in its square.
 const NOTHING: f64 = 1e-24;
 /// Part of the tolerance beyond which a cell that would slip backwards sticks.
 const BACKWARDS: f64 = 1e-2;
 
 impl Solution {
-    /// Solves the problem from what is there; if that fails without traction, and then with loads that grow.
+    /// Solves the problem from what is there; if that fails without traction, and then by the motion.
     pub(super) fn find(
         &mut self,
         problem: &Problem<'_>,
@@ -84,29 +82,16 @@ impl Solution {
             found = self.solve(problem, kernel, tolerance, work);
             iterations += found.iterations;
         }
-        let (mut carried, mut part, mut last) = (0.0, 0.5, None);
-        while !found.is_solved && part > LEAST_PART {
-            let share = f64::min(carried + part, 1.0);
-            match &last {
-                Some(last) => self.clone_from(last),
-                None => self.begin_cold(problem),
-            }
-            let wanted = problem.wanted.map(|wanted| wanted.map(|wanted| share * wanted));
-            let tried = self.solve(&Problem { wanted, ..*problem }, kernel, tolerance, work);
-            iterations += tried.iterations;
-            if tried.is_solved {
-                (carried, part, last) = (share, 2.0 * part, Some(self.clone()));
-            } else {
-                part *= 0.5;
-            }
-            found = Outcome { is_solved: tried.is_solved && share == 1.0, ..tried };
+        if !found.is_solved {
+            found = self.find_by_motion(problem, kernel, tolerance, work);
+            iterations += found.iterations;
         }
         Outcome { iterations, ..found }
     }
 
     /// Newton's method in the sets of cells that stick and slip, by conjugate gradients in the null space of the
     /// loads.
-    fn solve(
+    pub(super) fn solve(
         &mut self,
         problem: &Problem<'_>,
         kernel: &mut TangentialKernel,
