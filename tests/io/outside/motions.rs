@@ -1,6 +1,7 @@
 //! Steady motions, sweeps over patches, and fits that leave the model, each in one way: each is refused, or its messages say why.
 
-use super::silent::{Scene, curve, far_from_zero, grid, judge, rubber, table, wlf};
+use super::silent::{curve, far_from_zero, grid, rubber, table, wlf};
+use super::{Scene, judge_all};
 use crate::common::{Draws, Temporary, builder_of, builder_on, zener};
 use viscocontact::num_complex::Complex64;
 use viscocontact::prelude::*;
@@ -190,8 +191,7 @@ const MOTIONS: &[Scene] = &[
 
 #[test]
 fn no_motion_sweep_or_fit_outside_the_model_is_silent() {
-    let wrong: Vec<String> = MOTIONS.iter().filter_map(judge).collect();
-    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    judge_all(MOTIONS);
     assert!(MOTIONS.len() >= 35, "{}", MOTIONS.len());
 }
 
