@@ -121,12 +121,6 @@ impl Influence {
         let sizes = Influence { cells: self.cells, of: sizes }.drag(p);
         1e-13 * sizes[0].max(sizes[1])
     }
-
-    /// Rows aside of a motion along x1, at the distances −(n − 1) to n − 1.
-    pub fn rows(&self) -> Vec<Vec<f64>> {
-        let [n, m] = self.cells;
-        (0..m).map(|j| (0..2 * n - 1).map(|i| self.of[i * (2 * m - 1) + m - 1 + j][0]).collect()).collect()
-    }
 }
 
 impl Bodies {

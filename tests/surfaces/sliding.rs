@@ -1,4 +1,4 @@
-//! Steady motions as one problem, against dense ones, closed forms and limits. `SLIDING_SCENES` (60) random sliders and rollers, `SLIDING_SEED` (1).
+//! Steady motions as one problem, against closed forms and limits; against dense problems on all bodies in `sliding_chains`.
 
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
@@ -6,10 +6,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use super::steady::Scene;
+use crate::common::builder_of;
 use crate::common::refused::{not_covered, refused};
-use crate::common::steady_sliding::Time;
-use crate::common::{Draws, builder_of, from_environment};
 use viscocontact::adhesion::ExponentialAttraction;
 use viscocontact::contact::Builder;
 use viscocontact::prelude::*;
@@ -88,55 +86,6 @@ fn slow_and_fast_motions_are_elastic() {
             assert!(differ < 1e-6 * most, "{load} {speed}: {differ} of {most}");
             assert!(report.friction().abs() < 1e-8);
         }
-    }
-}
-
-/// Random sliders and rollers against a dense problem with the same mesh.
-#[test]
-fn random_motions_are_those_of_a_dense_problem() {
-    let (scenes, seed) = (from_environment("SLIDING_SCENES", 60), from_environment("SLIDING_SEED", 1));
-    let (mut compared, mut worst) = (0, [0.0_f64; 4]);
-    for number in 0..scenes {
-        let mut draws = Draws::new(1000 * seed + number);
-        let mut scene = Scene::draw(&mut draws, false);
-        scene.fluidity = 0.0;
-        let mut sliding = scene.builder().settings(Settings::default().with_tolerance(1e-9)).build_sliding().unwrap();
-        let velocity = scene.by_axis(scene.velocity, 0.0);
-        let report = sliding
-            .at(velocity, Load::force(scene.force))
-            .unwrap_or_else(|error| panic!("{number} {scene:?}: {error}"));
-        let exact = scene.reference(Time::Exact).expect("the dense problem has a solution");
-        let contact = sliding.fields();
-        // the dense problem has the cells about the middle of the contact, along the motion
-        let (grid, count) = (contact.grid(), exact.pressure.len() / scene.across);
-        let [n1, n2] = grid.cells();
-        let dense = |i: usize, j: usize| {
-            let [x1, x2] = grid.center(i, j);
-            let ([x, _], [_, aside]) = (scene.by_axis(x1, x2), scene.by_axis(i, j));
-            let place = (scene.velocity * x - scene.middle() - 0.5 + 0.5 * count as f64).round();
-            if place < 0.0 || place >= count as f64 {
-                0.0
-            } else {
-                exact.pressure[place as usize * scene.across + aside]
-            }
-        };
-        let cells = (0..n1).flat_map(|i| (0..n2).map(move |j| (i, j)));
-        let differ: f64 = cells.map(|(i, j)| (contact.pressure()[i * n2 + j] - dense(i, j)).abs()).sum();
-        let lateral = scene.velocity * contact.lateral_force(&scene.shape())[scene.axis.index()];
-        let errors = [
-            differ / scene.force,
-            (report.approach / exact.approach - 1.0).abs(),
-            (lateral / scene.force - exact.friction).abs(),
-            (contact.force() / scene.force - 1.0).abs(),
-        ];
-        println!("{number}: {errors:?} {report}, {} sets, {} transforms", report.sets, report.transforms);
-        compared += 1;
-        (0..4).for_each(|k| worst[k] = worst[k].max(errors[k]));
-    }
-    println!("{compared} scenes, worst {worst:?}");
-    assert_eq!(compared, scenes);
-    for (error, most) in worst.into_iter().zip([1e-6, 1e-7, 1e-7, 1e-12]) {
-        assert!(error < most, "{worst:?}");
     }
 }
 
