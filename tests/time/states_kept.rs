@@ -166,24 +166,6 @@ fn states_in_files_are_the_states() {
     assert_eq!(read_states(folder.join("absent.npz")).unwrap_err().kind(), ErrorKind::File);
 }
 
-/// Tables that are no elastic states are refused.
-#[test]
-fn tables_that_are_no_states_are_refused() {
-    let good = [(1.0, 1.0, 1.0, 1.0), (2.0, 1.5, 2.0, 2.0)];
-    assert!(ElasticStates::from_table(&good).is_ok());
-    assert!(matches!(ElasticStates::from_table(&good[..1]), Err(Error::WrongLength { .. })));
-    for (row, column) in (0..2).flat_map(|row| (0..4).map(move |column| (row, column))) {
-        for bad in [0.0, -1.0, f64::NAN] {
-            let mut table = good.map(|(a, b, c, d)| [a, b, c, d]);
-            table[row][column] = bad;
-            let table = table.map(|[a, b, c, d]| (a, b, c, d));
-            assert_eq!(ElasticStates::from_table(&table).unwrap_err().kind(), ErrorKind::Value, "{table:?}");
-        }
-    }
-    let falls = [(1.0, 1.0, 1.0, 1.0), (2.0, 0.5, 2.0, 2.0)];
-    assert!(matches!(ElasticStates::from_table(&falls), Err(Error::OutOfOrder { .. })));
-}
-
 /// Tables and charts take contacts on elastic states; what these do not have is empty.
 #[test]
 fn histories_of_states_are_written_and_drawn() {
