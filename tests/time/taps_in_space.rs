@@ -240,18 +240,6 @@ impl Taps {
         let mut work = [0.0; 3];
         while let Some(report) = run.next_step().unwrap_or_else(|error| panic!("{}: {error}", self.name)) {
             work[1] += report.convolution_equivalents();
-            if std::env::var_os("TAPS_TRACE").is_some() {
-                println!(
-                    "  step to {:.6} of {:.2e}: force {:.3e} approach {:.4e}, cells {}, error {:?}, part {:.3}",
-                    report.time / self.until,
-                    report.dt / self.until,
-                    report.force,
-                    report.approach / self.depth,
-                    report.contact_cells,
-                    report.time_error,
-                    (self.part)(report.time)
-                );
-            }
             work[0] += 1.0;
             for sample in run.samples() {
                 let sample = sample.unwrap();
@@ -276,9 +264,7 @@ fn taps_are_honest() {
         let (found, work) = taps.run();
         (0..3).for_each(|k| total[k] += work[k]);
         let error = taps.error(&found, most as usize / SAMPLES);
-        if from_environment("TAPS_LINES", 0) > 0 {
-            println!("{}: {error:.2?} at {work:.0?}", taps.name);
-        }
+        println!("{}: {error:.2?} at {work:.0?}", taps.name);
         match error {
             Some((error, time)) => ratios.push(error, &format!("at {time:.4}: {}", taps.name)),
             None => unknown += 1,
