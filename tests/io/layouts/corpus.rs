@@ -161,41 +161,31 @@ struct Style {
     encoding: Encoding,
 }
 
-const PLAIN: Style = Style {
-    name: "plain",
-    preamble: "",
-    delimiter: ",",
-    decimal_comma: false,
-    unit: "[]",
-    exponent: "e",
-    end: "\n",
-    quotes: false,
-    encoding: Encoding::Utf8,
-};
-const STYLES: [Style; 6] = [
-    PLAIN,
-    Style {
-        name: "German spreadsheet",
-        preamble: "Prüfbericht\n\nProbe;PMMA;23 °C\n",
-        delimiter: ";",
-        decimal_comma: true,
-        unit: "()",
-        encoding: Encoding::Utf16,
-        end: "\r\n",
-        ..PLAIN
-    },
-    Style {
-        name: "rheometer",
-        preamble: "Filename\tx.tri\nGeometry\t40.0\tmm\nRun\t3\n[step]\nSweep - 1\n",
-        delimiter: "\t",
-        unit: "row",
-        encoding: Encoding::Windows,
-        ..PLAIN
-    },
-    Style { name: "NumPy", preamble: "# made by a script\n", delimiter: " ", unit: "#", exponent: "D", ..PLAIN },
-    Style { name: "quoted", delimiter: ",", decimal_comma: true, quotes: true, end: "\r", ..PLAIN },
-    Style { name: "DIN", delimiter: ";", unit: "/", encoding: Encoding::Windows, ..PLAIN },
+type Row = (&'static str, &'static str, &'static str, bool, &'static str, &'static str, &'static str, bool, Encoding);
+
+#[rustfmt::skip]
+const STYLES: [Row; 6] = [
+    ("plain", "", ",", false, "[]", "e", "\n", false, Encoding::Utf8),
+    ("German spreadsheet", "Prüfbericht\n\nProbe;PMMA;23 °C\n", ";", true, "()", "e", "\r\n", false, Encoding::Utf16),
+    ("rheometer", "Filename\tx.tri\nGeometry\t40.0\tmm\nRun\t3\n[step]\nSweep - 1\n", "\t", false, "row", "e", "\n", false, Encoding::Windows),
+    ("NumPy", "# made by a script\n", " ", false, "#", "D", "\n", false, Encoding::Utf8),
+    ("quoted", "", ",", true, "[]", "e", "\r", true, Encoding::Utf8),
+    ("DIN", "", ";", false, "/", "e", "\n", false, Encoding::Windows),
 ];
+
+fn styles() -> [Style; 6] {
+    STYLES.map(|(name, preamble, delimiter, decimal_comma, unit, exponent, end, quotes, encoding)| Style {
+        name,
+        preamble,
+        delimiter,
+        decimal_comma,
+        unit,
+        exponent,
+        end,
+        quotes,
+        encoding,
+    })
+}
 
 fn table(kind: Kind, name: &str, columns: &[Column], rows: &[Vec<f64>], style: Style) -> Layout {
     let quoted = |text: String| if style.quotes { format!("\"{text}\"") } else { text };
@@ -330,7 +320,7 @@ pub fn corpus() -> Vec<Layout> {
     ];
     let mut all: Vec<Layout> = tables
         .iter()
-        .flat_map(|(kind, name, rows, spec)| STYLES.map(|style| table(*kind, name, &columns(spec), rows, style)))
+        .flat_map(|(kind, name, rows, spec)| styles().map(|style| table(*kind, name, &columns(spec), rows, style)))
         // a unit or symbol that a style cannot write
         .filter(|layout| !(layout.encoding == Encoding::Windows && layout.text.contains('δ')))
         .collect();
