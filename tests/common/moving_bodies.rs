@@ -81,6 +81,8 @@ pub struct Bodies {
     pub base_nu: f64,
     pub thickness: f64,
     pub datum: f64,
+    /// Whether cells that are periodic aside are a line contact.
+    pub as_line: bool,
 }
 
 /// Influences by the distance of cells along x1 and x2.
@@ -149,6 +151,8 @@ impl Bodies {
         let along = if self.periodic[0] { Axis::X1 } else { Axis::X2 };
         let datum = matches!(self.base, Base::Body(_)).then_some(self.datum);
         match (self.layer(), self.periodic) {
+            (None, _) if self.as_line => InfluenceKernel::line(&grid, self.datum),
+            (Some(layer), _) if self.as_line => InfluenceKernel::layer_line(&grid, layer, datum),
             (None, [true, true]) => InfluenceKernel::periodic(&grid),
             (None, [false, false]) => InfluenceKernel::half_space(&grid),
             (None, _) => InfluenceKernel::periodic_along(&grid, along, self.datum),

@@ -40,7 +40,7 @@ fn waves(draws: &mut Draws, bodies: &Bodies) -> impl Fn(f64, f64) -> f64 + Clone
 
 fn bodies(periodic: bool, cells: [usize; 2], creep: Creep, nu: f64) -> Bodies {
     let (periodic, base, spacing) = ([periodic; 2], Base::None, [1.0, 1.2]);
-    Bodies { periodic, cells, spacing, creep, nu, base, base_nu: 0.5, thickness: 1.0, datum: 1e4 }
+    Bodies { periodic, cells, spacing, creep, nu, base, base_nu: 0.5, thickness: 1.0, datum: 1e4, as_line: false }
 }
 
 /// Random pairs: the points of a counter-body that slides rest under the pressure, those of one that rolls pass it as those of the body.

@@ -1,4 +1,4 @@
-//! Steady motions over layers whose limits are other bodies, over a half-space that flows, and by a modulus over frequency.
+//! Steady motions over a half-space that flows, and by a modulus over frequency. Layers are in `sliding_chains`.
 
 use std::f64::consts::{PI, TAU};
 
@@ -6,107 +6,9 @@ use crate::common::builder_of;
 use crate::common::gauss::points;
 use crate::common::moving_bodies::Creep;
 use crate::common::steady_sliding::{Below, SteadySliding as Dense};
-use viscocontact::Layer;
 use viscocontact::prelude::*;
-use viscocontact::sliding::SlidingReport;
 
 const GLASSY: f64 = 0.25e-6;
-
-/// Compliances relative to [`GLASSY`].
-fn creep(glassy: f64, terms: Vec<(f64, f64)>) -> Creep {
-    Creep { glassy, terms }.times(GLASSY)
-}
-
-/// A builder of a ball or a wavy indenter on a grid of 1 m.
-fn pressed(kernel: impl Fn(&Grid) -> viscocontact::Result<InfluenceKernel>, grid: &Grid) -> Builder {
-    let kernel = kernel(grid).unwrap();
-    let periodic = kernel.periodic_axes();
-    let shape = FnGeometry::new(move |x1: f64, x2: f64| {
-        let along = |axis: usize, x: f64| if periodic[axis] { 2e-3 * (1.0 - (TAU * x).cos()) } else { 0.05 * x * x };
-        along(0, x1) + along(1, x2)
-    });
-    ViscoelasticContact::builder(grid.clone())
-        .geometry(&shape)
-        .kernel(kernel)
-        .settings(Settings::default().with_tolerance(1e-11))
-}
-
-fn body(factor: f64, nu: f64) -> Material {
-    creep(factor, vec![(2.0 * factor, 0.05), (4.0 * factor, 1.0)]).material(nu)
-}
-
-/// The kernels of a body, without a layer and with one.
-type Kernels = dyn Fn(&Grid, Option<Layer>) -> viscocontact::Result<InfluenceKernel>;
-
-/// Friction and approach over two bases are the same to 1e-8.
-fn same(what: &str, found: &SlidingReport, exact: &SlidingReport) {
-    let errors = [found.friction() / exact.friction() - 1.0, found.approach / exact.approach - 1.0];
-    println!("{what}: {errors:?}");
-    assert!(errors.iter().all(|error| error.abs() < 1e-8), "{what}: {errors:?}");
-}
-
-/// The general layer on a base of its own material, on one as stiff in proportion, and on ever stiffer ones is the half-space, the layer whose base creeps as it
-/// does, and the layer on a rigid base.
-#[test]
-fn bases_that_are_equal_elastic_or_rigid_are_limits() {
-    let thickness = 0.1;
-    let grids = [Grid::square(16, 1.0).unwrap(), Grid::new([48, 1], [1.0, 1.0]).unwrap()];
-    let bodies: [(&Grid, &Kernels); 4] = [
-        (&grids[0], &|grid, layer| {
-            layer.map_or_else(|| InfluenceKernel::half_space(grid), |layer| InfluenceKernel::layer(grid, layer))
-        }),
-        (&grids[0], &|grid, layer| {
-            layer.map_or_else(|| InfluenceKernel::periodic(grid), |layer| InfluenceKernel::layer_periodic(grid, layer))
-        }),
-        (&grids[0], &|grid, layer| match layer {
-            Some(layer) => {
-                let datum = format!("{layer}").contains("half-space").then_some(40.0);
-                InfluenceKernel::layer_periodic_along(grid, layer, Axis::X2, datum)
-            }
-            None => InfluenceKernel::periodic_along(grid, Axis::X2, 40.0),
-        }),
-        (&grids[1], &|grid, layer| match layer {
-            Some(layer) => {
-                let datum = format!("{layer}").contains("half-space").then_some(40.0);
-                InfluenceKernel::layer_line(grid, layer, datum)
-            }
-            None => InfluenceKernel::line(grid, 40.0),
-        }),
-    ];
-    for (number, (grid, kernel)) in bodies.into_iter().enumerate() {
-        // the mean of a compressible layer counts on a rigid base alone
-        let nu = if number == 1 { 0.5 } else { 0.4 };
-        for velocity in [[0.3, 0.0], [0.0, -0.3]] {
-            if number == 3 && velocity[0] == 0.0 {
-                continue;
-            }
-            let at = |sliding: viscocontact::Result<SteadySliding>| {
-                sliding.unwrap().at(velocity, Load::force(20.0)).unwrap()
-            };
-            let half_space = at(pressed(|grid| kernel(grid, None), grid).material(body(1.0, nu)).build_sliding());
-            let on = |base: Material| {
-                let layer = Layer::bonded_to_material(thickness, &body(1.0, nu), &base).unwrap();
-                let builder = || pressed(|grid| kernel(grid, Some(layer)), grid).material(body(1.0, nu));
-                [at(builder().build_sliding_on(base)), at(builder().build_sliding())]
-            };
-            same(&format!("{number} equal"), &on(body(1.0, nu))[0], &half_space);
-            let [general, own] = on(body(0.2, 0.3));
-            same(&format!("{number} in proportion"), &general, &own);
-            // linear in the compliance of the base but for its square
-            let [stiff, stiffer] = [4e-6, 2e-6].map(|part| on(body(part, 0.3))[0]);
-            let rigid = at(pressed(|grid| kernel(grid, Some(Layer::bonded_to_rigid(thickness, nu)?)), grid)
-                .material(body(1.0, nu))
-                .build_sliding());
-            let limit = [
-                (stiffer.friction(), stiff.friction(), rigid.friction()),
-                (stiffer.approach, stiff.approach, rigid.approach),
-            ];
-            let errors = limit.map(|(stiffer, stiff, rigid)| (2.0 * stiffer - stiff) / rigid - 1.0);
-            println!("{number} rigid: {errors:?}");
-            assert!(errors.iter().all(|error| error.abs() < 1e-8), "{number}: {errors:?}");
-        }
-    }
-}
 
 /// A ball on a half-space that flows: the pressure is steady, from coefficients that are integrals over the whole way.
 #[test]
@@ -164,13 +66,18 @@ fn a_half_space_may_flow() {
 #[test]
 fn a_modulus_over_frequency_is_its_series() {
     let grid = Grid::square(32, 1.0).unwrap();
-    let builder = || pressed(InfluenceKernel::periodic, &grid);
-    let series = body(1.0, 0.5).contact_spectrum().unwrap().unwrap();
-    let modulus = move |omega: f64| series.complex_modulus(omega);
-    let mut by_series = builder().material(body(1.0, 0.5)).build_sliding().unwrap();
-    let mut by_modulus = builder().build_sliding_by(modulus).unwrap();
+    let shape = FnGeometry::new(|x1: f64, x2: f64| 2e-3 * (2.0 - (TAU * x1).cos() - (TAU * x2).cos()));
+    let body = || Creep { glassy: 1.0, terms: vec![(2.0, 0.05), (4.0, 1.0)] }.times(GLASSY).material(0.5);
+    let builder = || {
+        let kernel = InfluenceKernel::periodic(&grid).unwrap();
+        builder_of(&shape, grid.clone(), body()).kernel(kernel).settings(Settings::default().with_tolerance(1e-11))
+    };
+    let series = body().contact_spectrum().unwrap().unwrap();
+    let mut by_series = builder().build_sliding().unwrap();
+    let mut by_modulus = builder().build_sliding_by(move |omega: f64| series.complex_modulus(omega)).unwrap();
     for velocity in [[0.01, 0.0], [0.3, -2.0], [-40.0, 0.0]] {
         let [found, exact] = [&mut by_modulus, &mut by_series].map(|own| own.at(velocity, Load::force(20.0)).unwrap());
-        same("modulus", &found, &exact);
+        let errors = [found.friction() / exact.friction() - 1.0, found.approach / exact.approach - 1.0];
+        assert!(errors.iter().all(|error| error.abs() < 1e-8), "{velocity:?}: {errors:?}");
     }
 }

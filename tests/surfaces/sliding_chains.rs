@@ -64,6 +64,7 @@ impl Scene {
             base_nu: draws.between(0.1, 0.5),
             thickness: draws.scale(2.0, 30.0),
             datum: 1e4,
+            as_line: line && (number / 10).is_multiple_of(2),
         };
         let wave = |draws: &mut Draws| {
             let number = |draws: &mut Draws, axis: usize| if cells[axis] == 1 { 0.0 } else { draws.below(4) as f64 };
