@@ -3,6 +3,6 @@
 mod bodies;
 mod dense;
 mod gradients;
-mod kept;
+pub(crate) mod kept;
 mod runs;
 mod steps;
