@@ -103,7 +103,7 @@ fn outliers_have_no_weight() {
         let curve = noisy(&experiment, 0.008, 0.0, rng);
         let mut force = curve.force().to_vec();
         for value in &mut force {
-            if rng.next_u32() % 200 == 0 {
+            if rng.next_u32().is_multiple_of(200) {
                 *value += 30.0 * 0.008;
             }
         }

@@ -75,11 +75,15 @@ fn other_scenes_are_refused_by_what_differs() {
         CheckpointError::OtherScene { what, .. } => what,
         error => panic!("unexpected {error}"),
     };
-    let on = |grid: Grid, settings: Settings| sphere_on(grid, three_times(), settings);
-    assert_eq!(what(on(Grid::square(16, 4.1e-3).unwrap(), Settings::default())), "grid");
-    assert_eq!(what(on(grid(), Settings::default().with_window(false))), RULES);
-    assert_eq!(what(on(grid(), Settings::default().with_series_tolerance(1e-3))), "series tolerance");
-    assert_eq!(what(on(grid(), Settings::default().with_time_rule(TimeRule::ExponentialLinear))), RULES);
+    let settings = Settings::default();
+    for (grid, settings, differs) in [
+        (Grid::square(16, 4.1e-3).unwrap(), settings, "grid"),
+        (grid(), settings.with_window(false), RULES),
+        (grid(), settings.with_series_tolerance(1e-3), "series tolerance"),
+        (grid(), settings.with_time_rule(TimeRule::ExponentialLinear), RULES),
+    ] {
+        assert_eq!(what(sphere_on(grid, three_times(), settings)), differs);
+    }
     let layer = |thickness: f64| {
         let layer = Layer::bonded_to_rigid(thickness, 0.5).unwrap();
         let kernel = InfluenceKernel::layer(&grid(), layer).unwrap();
