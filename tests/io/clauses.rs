@@ -151,7 +151,7 @@ fn contacts(t: &mut Table) {
     t.row(elastic().solve([Load::force(0.1); 2]), Value, "loads of the rigid bodies: 2 given, 1 needed");
     t.row(elastic().set_surface(&[0.0; 255]), Value, "displacement of the surface: 255 given, 256 needed");
     t.row(elastic().set_surface(&[NAN; 256]), Value, "displacement of the surface = NaN → finite");
-    t.row(pressed().step_unless(&set, 0.1, &[Load::force(0.2)]), Cancelled, "a step was cancelled by its caller");
+    t.row(pressed().step_unless(&set, 0.1, [Load::force(0.2)]), Cancelled, "a step was cancelled by its caller");
     t.row(Threads::run(1025, |_| ()), Value, "ranks = … → 1 to 1024");
 }
 
@@ -214,9 +214,9 @@ fn loads_and_texts(t: &mut Table) {
     t.row(rows(text("time [s],force [N]\n0,1\n1,2\n2,3,4\n")), File, "line 4: 3 columns separated by commas, but 2 are needed…");
     t.row(rows(text("time [s],force [N]\n0,1\n1,2\n2,high\n")), File, "line 4, column 2: \"high\" is not a number; leave the line out…");
     let both = text("force [N],force [mN]\n0,1\n1,2\n");
-    t.row(both.find(&FORCE).map_err(Error::from), File, "line 1: …1 \"force [N]\", 2 \"force [mN]\"…choose by TextTable::only…");
-    t.row(both.clone().with_heading(3, "force [N]").map_err(Error::from), File, "there is no column …, or its number from 1 on");
-    t.row(both.only(&["depth"]).map_err(Error::from), File, "there is no column depth (headings: force [N], force [mN])…");
+    t.row(both.find(&FORCE), File, "line 1: …1 \"force [N]\", 2 \"force [mN]\"…choose by TextTable::only…");
+    t.row(both.clone().with_heading(3, "force [N]"), File, "there is no column …, or its number from 1 on");
+    t.row(both.only(&["depth"]), File, "there is no column depth (headings: force [N], force [mN])…");
     let at = |time: f64, force: f64| (time, Load::force(force));
     t.row(Periodic::new(&[at(0.0, 1.0)]), Value, "load table: 1 given, at least 2 needed");
     t.row(Periodic::new(&[at(1.0, 1.0), at(1.0, 2.0)]), Value, "period = 0.0 → finite and > 0");
