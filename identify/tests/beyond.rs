@@ -1,13 +1,11 @@
 //! Beyond the times of its curve a fit has the law of its model, and says how little the curve knows there. `BEYOND` (12) chooses the number of random curves.
 
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
 use viscocontact::contact::Warnings;
 use viscocontact::load::Load;
 use viscocontact::states::{ElasticStates, StatesContact};
-use viscocontact_identify::{Curve, Error, Experiment, Fit, Identification, Model, Nuisance, Protocol};
+use viscocontact_identify::{Error, Experiment, Fit, Identification, Model, Nuisance, Protocol};
 
-use crate::random::{correlated, logarithmic, uniform};
+use crate::random::{from_environment, generator, logarithmic, noisy, normal, uniform};
 
 /// E(t) of a law with powers of time, from its formula.
 fn law(model: Model, of: &[f64], t: f64) -> f64 {
@@ -25,19 +23,16 @@ fn fit(truth: Model, model: Model, values: &[(&str, f64)], length: f64, seed: u6
     let protocol =
         Protocol::ramp_hold_retract(1.0e-6 / ramp, [0.2e-6, 0.8e-6], length - 2.0 * ramp, length / 500.0).unwrap();
     let experiment = Experiment::new(protocol, ElasticStates::sphere(5.0e-6).unwrap());
-    let pure = Identification::new(truth).respond(&experiment, values).unwrap();
-    let sigma = 1e-3 * pure.iter().map(|sample| sample.force).fold(0.0, f64::max);
-    let noise = correlated(pure.len(), sigma, 0.0, &mut ChaCha8Rng::seed_from_u64(seed));
-    let force = pure.iter().zip(noise).map(|(sample, noise)| sample.force + noise).collect();
-    let curve = Curve::new(experiment, force).unwrap();
+    let rng = &mut generator(seed);
+    let curve = noisy(&Identification::new(truth), experiment, values, |greatest| 1e-3 * greatest * normal(rng));
     Identification::new(model).contact_point(Nuisance::Fitted).fit(&[curve]).unwrap()
 }
 
 #[test]
 fn the_modulus_of_a_fit_is_that_of_its_law_at_all_times() {
-    let count = std::env::var("BEYOND").ok().and_then(|text| text.parse().ok()).unwrap_or(12);
+    let count = from_environment("BEYOND", 12);
     for seed in 0..count {
-        let rng = &mut ChaCha8Rng::seed_from_u64(seed);
+        let rng = &mut generator(seed);
         let length = logarithmic(rng, [1e-2, 1e2]);
         let cutoff = 1e-5 * length;
         let (modulus, tau, exponent) =

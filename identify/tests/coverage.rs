@@ -1,17 +1,16 @@
 //! Intervals over many seeds: correlated noise, curves of unequal noise, outliers.
 
 use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
+use rand_chacha::rand_core::Rng;
 use viscocontact::states::ElasticStates;
 use viscocontact_identify::{Curve, Experiment, Fit, Identification, Model, Noise, Nuisance, Protocol};
 
-use crate::random::{correlated, normal};
+use crate::random::{self, correlated, from_environment, generator, normal};
 
 pub const ZENER: [(&str, f64); 3] = [("E0", 1.0), ("Einf", 0.25), ("tau", 1.0)];
 
-/// Number of seeds: `COVERAGE_SEEDS`, or fewer.
 fn seeds() -> u64 {
-    std::env::var("COVERAGE_SEEDS").ok().and_then(|text| text.parse().ok()).unwrap_or(12)
+    from_environment("COVERAGE_SEEDS", 12)
 }
 
 /// Depth 1 in unit time, held to 2, and out at unit speed.
@@ -23,10 +22,8 @@ pub fn experiment(tip: std::sync::Arc<ElasticStates>, count: u32) -> Experiment 
 
 /// A curve with noise of standard deviation `sigma`, each deviation `phi` times the one before plus an independent part.
 fn noisy(experiment: &Experiment, sigma: f64, phi: f64, rng: &mut ChaCha8Rng) -> Curve {
-    let samples = Identification::new(Model::Zener).respond(experiment, &ZENER).unwrap();
-    let force =
-        samples.iter().zip(correlated(samples.len(), sigma, phi, rng)).map(|(sample, noise)| sample.force + noise);
-    Curve::new(experiment.clone(), force.collect()).unwrap()
+    let mut noise = correlated(phi, rng);
+    random::noisy(&Identification::new(Model::Zener), experiment.clone(), &ZENER, |_| sigma * noise())
 }
 
 /// Share of the fits whose 95 % interval of a parameter contains the truth, and the root of the mean squared error of its logarithm.
@@ -56,7 +53,7 @@ fn correlated_noise_of_any_strength_has_true_intervals() {
         let experiment = experiment(ElasticStates::sphere(9.0 / 16.0).unwrap(), count);
         let fits: Vec<Fit> = (0..seeds())
             .map(|seed| {
-                let curve = noisy(&experiment, 0.008, phi, &mut ChaCha8Rng::seed_from_u64(seed));
+                let curve = noisy(&experiment, 0.008, phi, &mut generator(seed));
                 fitting.fit(&[curve]).unwrap()
             })
             .collect();
@@ -80,7 +77,7 @@ fn curves_of_unequal_noise_are_weighed() {
     let fitting = Identification::new(Model::Zener).contact_point(Nuisance::Fitted);
     let (mut joint, mut alone) = (Vec::new(), Vec::new());
     for seed in 0..seeds() {
-        let rng = &mut ChaCha8Rng::seed_from_u64(seed);
+        let rng = &mut generator(seed);
         let curves = [noisy(&experiments[0], 0.004, 0.0, rng), noisy(&experiments[1], 0.08, 0.0, rng)];
         alone.push(fitting.fit(&curves[..1]).unwrap());
         joint.push(fitting.fit(&curves).unwrap());
@@ -102,11 +99,11 @@ fn outliers_have_no_weight() {
     let fitting = Identification::new(Model::Zener).contact_point(Nuisance::Fitted);
     let (mut plain, mut robust, mut clean) = (Vec::new(), Vec::new(), Vec::new());
     for seed in 0..seeds() {
-        let rng = &mut ChaCha8Rng::seed_from_u64(seed);
+        let rng = &mut generator(seed);
         let curve = noisy(&experiment, 0.008, 0.0, rng);
         let mut force = curve.force().to_vec();
         for value in &mut force {
-            if rng.next_u32() % 200 == 0 {
+            if rng.next_u32().is_multiple_of(200) {
                 *value += 30.0 * 0.008;
             }
         }
@@ -142,21 +139,19 @@ fn searches_take_little_work() {
         (Model::FractionalZener, &[4.0e3, 1.0e3, 0.3, 0.6], 4),
         (Model::FractionalZener, &[4.0e3, 1.0e3, 0.3, 0.98], 3),
     ];
-    let seeds: u64 = std::env::var("WORK_SEEDS").ok().and_then(|text| text.parse().ok()).unwrap_or(2);
+    let seeds = from_environment("WORK_SEEDS", 2);
     for (model, values, millions) in models {
         let work = |seed: u64| {
-            let rng = &mut ChaCha8Rng::seed_from_u64(seed);
+            let rng = &mut generator(seed);
             let times: Vec<f64> = (0..1000).map(|k| 2.0 * f64::from(k) / 999.0).collect();
             let drive = times.iter().map(|&t: &f64| 1.2e-6 * t.min(1.0) - 0.2e-6 + 1e-9 * normal(rng)).collect();
             let sphere = ElasticStates::sphere(5e-6).unwrap();
             let experiment = Experiment::new(Protocol::new(times, drive).unwrap(), sphere).with_spring(0.05).unwrap();
             let names = model.parameters();
             let named: Vec<(&str, f64)> = names.iter().map(String::as_str).zip(values.iter().copied()).collect();
-            let samples = Identification::new(model).respond(&experiment, &named).unwrap();
-            let greatest = samples.iter().fold(0.0, |most: f64, sample| most.max(sample.force));
-            let force = samples.iter().map(|sample| sample.force + 0.01 * greatest * normal(rng)).collect();
-            let fitting = Identification::new(model).contact_point(Nuisance::Fitted);
-            let fit = fitting.fit(&[Curve::new(experiment, force).unwrap()]).unwrap();
+            let of = Identification::new(model);
+            let curve = random::noisy(&of, experiment, &named, |greatest| 0.01 * greatest * normal(rng));
+            let fit = of.contact_point(Nuisance::Fitted).fit(&[curve]).unwrap();
             println!("{seed} {model:?} {values:?}: {:.2} million, {}", fit.work() as f64 * 1e-6, fit.iterations());
             fit.work()
         };

@@ -1,12 +1,10 @@
 use std::sync::Arc;
 
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
 use viscocontact::TextFormat;
 use viscocontact::prelude::*;
 use viscocontact_identify::{Curve, Error, Experiment, Nuisance, Protocol, Recording, Result};
 
-use crate::random::{correlated, normal};
+use crate::random::{correlated, exact, from_environment, generator, marched, normal};
 use crate::scenes::scene;
 
 fn read(text: &str) -> Result<Recording> {
@@ -19,13 +17,7 @@ fn force_curve(tip: &Arc<ElasticStates>) -> Result<(Protocol, Vec<f64>)> {
     let protocol = Protocol::ramp_hold_retract(1.0e-6, [1.0e-6, 2.0e-6], 2.0, 0.01)?;
     let experiment = Experiment::new(protocol.clone(), Arc::clone(tip)).with_spring(0.1)?;
     let body = Material::incompressible(Zener::relaxing(5.0e3, 2.0e3, 0.5)?);
-    let (history, mut contact) = (experiment.load_history()?, StatesContact::new(tip, &body)?);
-    let mut force = Vec::new();
-    for &time in protocol.times() {
-        contact.step(time - contact.time(), viscocontact::load::LoadHistory::at(&history, time))?;
-        force.push(contact.force());
-    }
-    Ok((protocol, force))
+    Ok((protocol, marched(&experiment, &body, 1)?))
 }
 
 fn curve(protocol: &Protocol, force: &[f64], tip: &Arc<ElasticStates>, units: [f64; 2]) -> Result<Curve> {
@@ -116,7 +108,7 @@ fn faults_of_a_curve_are_told_apart_under_noise() -> Result<()> {
     let (protocol, force) = force_curve(&tip)?;
     let greatest = force.iter().copied().fold(0.0, f64::max);
     for (seed, noise) in (0_u64..).zip([0.0, 0.001, 0.01, 0.1, 0.2].into_iter().flat_map(|noise| [noise; 20])) {
-        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let mut rng = generator(seed);
         let noisy: Vec<f64> = force.iter().map(|force| force + noise * greatest * normal(&mut rng)).collect();
         let check = |units: [f64; 2]| curve(&protocol, &noisy, &tip, units)?.check();
         check([1.0; 2]).unwrap_or_else(|error| panic!("noise {noise}, seed {seed}: {error}"));
@@ -131,9 +123,15 @@ fn faults_of_a_curve_are_told_apart_under_noise() -> Result<()> {
     Ok(())
 }
 
-/// Number of seeds: `CHECK_SEEDS`, or fewer.
 fn check_seeds() -> u64 {
-    std::env::var("CHECK_SEEDS").ok().and_then(|text| text.parse().ok()).unwrap_or(40)
+    from_environment("CHECK_SEEDS", 40)
+}
+
+/// Noise of a tenth of the greatest of these forces.
+fn tenth(force: &[f64], correlation: f64, seed: u64) -> Vec<f64> {
+    let (greatest, rng) = (force.iter().copied().fold(0.0, f64::max), &mut generator(seed));
+    let mut noise = correlated(correlation, rng);
+    force.iter().map(|_| 0.1 * greatest * noise()).collect()
 }
 
 /// Of curves of each correlation at most one in 100 of noise alone passes, beyond three deviations of that count,
@@ -143,11 +141,10 @@ fn contacts_are_told_from_noise_white_or_correlated() -> Result<()> {
     let seeds = check_seeds();
     let tip = ElasticStates::sphere(5.0e-6)?;
     let (protocol, force) = force_curve(&tip)?;
-    let greatest = force.iter().copied().fold(0.0, f64::max);
     for correlation in [0.0, 0.5, 0.8, 0.9, 0.95, 0.98] {
         let (mut passed, mut refused) = (0, 0);
         for seed in 0..seeds {
-            let noise = correlated(force.len(), 0.1 * greatest, correlation, &mut ChaCha8Rng::seed_from_u64(seed));
+            let noise = tenth(&force, correlation, seed);
             let alone = curve(&protocol, &noise, &tip, [1.0; 2])?.check();
             let contact: Vec<f64> = force.iter().zip(&noise).map(|(force, noise)| force + noise).collect();
             passed += u64::from(alone.is_ok());
@@ -175,10 +172,8 @@ fn contacts_of_any_kind_are_no_noise() {
         for seed in 0..seeds {
             let scene = scene(seed);
             let known = scene.identification.clone().contact_point(Nuisance::Fixed(scene.contact_point));
-            let samples = known.respond(&scene.experiment, &scene.named()).unwrap();
-            let force: Vec<f64> = samples.iter().map(|sample| sample.force).collect();
-            let greatest = force.iter().copied().fold(0.0, f64::max);
-            let noise = correlated(force.len(), 0.1 * greatest, correlation, &mut ChaCha8Rng::seed_from_u64(seed));
+            let force = exact(&known, scene.experiment.clone(), &scene.named()).force().to_vec();
+            let noise = tenth(&force, correlation, seed);
             let noisy = force.iter().zip(&noise).map(|(force, noise)| force + noise).collect();
             let check = |force: Vec<f64>| Curve::new(scene.experiment.clone(), force).unwrap().check();
             let is_refused = |force| matches!(check(force), Err(Error::NoContact { .. }));

@@ -1,12 +1,10 @@
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
 use viscocontact_identify::{Error, Result, TimeAtSize, Verdict};
 
-use crate::random::normal;
+use crate::random::{generator, normal};
 
 /// Share of 4000 pairs of times with each verdict, where times grow as a power of the area.
 fn shares(power: f64, area: f64, log_error: f64) -> Result<[f64; 4]> {
-    let mut rng = ChaCha8Rng::seed_from_u64(7);
+    let mut rng = generator(7);
     let (mut counts, draws) = ([0.0; 4], 4000);
     for _ in 0..draws {
         let mut at = |area: f64| TimeAtSize {

@@ -1,14 +1,11 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
-use viscocontact::load::LoadHistory;
 use viscocontact::num_complex::Complex;
 use viscocontact::prelude::*;
 use viscocontact_identify::{Curve, Error, Experiment, Protocol, Result};
 
-use crate::random::normal;
+use crate::random::{generator, marched, normal};
 
 /// Contact modulus of the bodies of these tests: E∞, then (E_i, τ_i).
 const EQUILIBRIUM: f64 = 2.0e3;
@@ -23,22 +20,12 @@ fn exact(frequency: f64) -> Complex<f64> {
     EQUILIBRIUM + TERMS.iter().map(term).sum::<Complex<f64>>()
 }
 
-/// The force at each time of the protocol, by the contact on elastic states in `substeps` steps between two times.
+/// The force at each time of the protocol, in so many steps between two times.
 fn force(experiment: &Experiment, substeps: u32) -> Result<Vec<f64>> {
     // an incompressible body of shear modulus G has the contact modulus 4 G
     let terms = TERMS.map(|(modulus, time)| (0.25 * modulus, time));
     let body = Material::incompressible(GeneralizedMaxwell::new(0.25 * EQUILIBRIUM, &terms)?);
-    let mut contact = StatesContact::new(experiment.tip(), &body)?;
-    let (history, times) = (experiment.load_history()?, experiment.protocol().times());
-    let mut force = vec![0.0];
-    for pair in times.windows(2) {
-        for k in 1..=substeps {
-            let time = pair[0] + (pair[1] - pair[0]) * f64::from(k) / f64::from(substeps);
-            contact.step(time - contact.time(), history.at(time))?;
-        }
-        force.push(contact.force());
-    }
-    Ok(force)
+    marched(experiment, &body, substeps)
 }
 
 /// A ramp to a depth of 1 µm, a dwell of ten times the longest relaxation time, and 12 periods.
@@ -86,7 +73,7 @@ fn the_standard_error_is_the_spread() -> Result<()> {
         }
         let force = force(&experiment, 2)?;
         let measure = |noise: f64, seed: u64| {
-            let mut rng = ChaCha8Rng::seed_from_u64(seed);
+            let mut rng = generator(seed);
             let noisy = force.iter().map(|force| force + noise * normal(&mut rng)).collect();
             Curve::new(experiment.clone(), noisy)?.complex_modulus(frequency, window(frequency), 0.0)
         };
@@ -95,22 +82,13 @@ fn the_standard_error_is_the_spread() -> Result<()> {
         let noise = 0.01 * clean.amplitude * clean.stiffness * clean.modulus().norm();
         let results = (1..=count).map(|seed| measure(noise, seed)).collect::<Result<Vec<_>>>()?;
         let mean = |of: &dyn Fn(usize) -> f64| (0..results.len()).map(of).sum::<f64>() / count as f64;
-        for (name, exact, values, errors) in [
-            (
-                "E′",
-                clean.storage,
-                results.iter().map(|r| r.storage).collect::<Vec<_>>(),
-                results.iter().map(|r| r.storage_error).collect::<Vec<_>>(),
-            ),
-            (
-                "E″",
-                clean.loss,
-                results.iter().map(|r| r.loss).collect(),
-                results.iter().map(|r| r.loss_error).collect(),
-            ),
-        ] {
-            let (average, error) = (mean(&|k| values[k]), mean(&|k| errors[k]));
-            let spread = mean(&|k| (values[k] - average).powi(2)).sqrt();
+        type Of = fn(&viscocontact_identify::ComplexModulus) -> [f64; 2];
+        let parts: [(&str, Of); 2] =
+            [("E′", |of| [of.storage, of.storage_error]), ("E″", |of| [of.loss, of.loss_error])];
+        for (name, of) in parts {
+            let exact = of(&clean)[0];
+            let (average, error) = (mean(&|k| of(&results[k])[0]), mean(&|k| of(&results[k])[1]));
+            let spread = mean(&|k| (of(&results[k])[0] - average).powi(2)).sqrt();
             // 300 draws determine a spread to 4 %, and a mean to 6 % of it
             assert!((spread / error - 1.0).abs() < 0.13, "{spring:?} {name}: spread {spread}, standard error {error}");
             assert!((average - exact).abs() < 0.25 * spread, "{spring:?} {name}: {average} for {exact}");

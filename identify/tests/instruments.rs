@@ -2,14 +2,12 @@
 
 use std::sync::Arc;
 
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
 use viscocontact::states::ElasticStates;
 use viscocontact_identify::{
     Curve, Experiment, FitWarning, Identification, Model, Noise, Nuisance, Protocol, Result, tips,
 };
 
-use crate::random::normal;
+use crate::random::{from_environment, generator, normal};
 
 const BODY: [(&str, f64); 3] = [("E0", 4.0e3), ("Einf", 1.0e3), ("tau", 0.3)];
 
@@ -24,13 +22,8 @@ fn force_curve(tip: &Arc<ElasticStates>) -> Result<(Experiment, Vec<f64>)> {
 /// The greatest force, and noise of 0.5 % of it.
 fn with_noise(force: &[f64], seed: u64) -> (f64, Vec<f64>) {
     let greatest = force.iter().copied().fold(0.0, f64::max);
-    let rng = &mut ChaCha8Rng::seed_from_u64(seed);
+    let rng = &mut generator(seed);
     (greatest, force.iter().map(|force| force + 0.005 * greatest * normal(rng)).collect())
-}
-
-/// Number of seeds: `SYSTEMATIC_SEEDS`, or fewer.
-fn seeds() -> u64 {
-    std::env::var("SYSTEMATIC_SEEDS").ok().and_then(|text| text.parse().ok()).unwrap_or(40)
 }
 
 /// What instruments add: fits with the nuisance that describes it are unbiased, and where none is described, the fit says so.
@@ -53,7 +46,7 @@ fn what_instruments_add_is_described_or_told() -> Result<()> {
     ];
     for (name, added, fitting) in cases {
         let (mut fits, mut flagged) = (Vec::new(), 0);
-        for seed in 0..seeds() {
+        for seed in 0..from_environment("SYSTEMATIC_SEEDS", 40) {
             let (greatest, force) = with_noise(&exact, 100 + seed);
             let force = force.iter().enumerate().map(|(k, force)| force + added(k, greatest, *force)).collect();
             let fit = fitting.fit(&[Curve::new(experiment.clone(), force)?])?;

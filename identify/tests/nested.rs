@@ -2,18 +2,15 @@
 
 use std::ops::Range;
 
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
 use viscocontact::states::ElasticStates;
 use viscocontact_identify::{Curve, Experiment, Fit, FitWarning, Identification, Model, Nuisance, Protocol};
 
-use crate::random::{choice, logarithmic, normal, uniform};
+use crate::random::{choice, from_environment, generator, logarithmic, noisy, normal, uniform};
 
 /// Seeds of the curves: `NESTED_CURVES` of them from `NESTED_SEED` on, or fewer.
 fn seeds() -> Range<u64> {
-    let of = |name: &str| std::env::var(name).ok().and_then(|text| text.parse().ok());
-    let first = of("NESTED_SEED").unwrap_or(0);
-    first..first + of("NESTED_CURVES").unwrap_or(8)
+    let first = from_environment("NESTED_SEED", 0);
+    first..first + from_environment("NESTED_CURVES", 8)
 }
 
 const POWER_LAW: Model = Model::PowerLaw { cutoff: 1e-6 };
@@ -28,7 +25,7 @@ struct Case {
 
 /// A bead that approaches, or is held, or retracts too, through a spring or by its depth; the drive scatters by 1 nm.
 fn case(seed: u64) -> Case {
-    let rng = &mut ChaCha8Rng::seed_from_u64(seed);
+    let rng = &mut generator(seed);
     let (truth, values) = match choice(rng, &[0, 1, 2, 3]) {
         0 => (Model::Elastic, vec![1.0e3]),
         1 => (Model::Maxwell, vec![1.0e3, logarithmic(rng, [0.05, 5.0])]),
@@ -53,12 +50,10 @@ fn case(seed: u64) -> Case {
     }
     let names = truth.parameters();
     let named: Vec<(&str, f64)> = names.iter().map(String::as_str).zip(values.iter().copied()).collect();
-    let samples = Identification::new(truth).respond(&experiment, &named).unwrap();
-    let greatest = samples.iter().fold(0.0, |most: f64, sample| most.max(sample.force));
-    let force = samples.iter().map(|sample| sample.force + noise * greatest * normal(rng)).collect();
+    let curve = noisy(&Identification::new(truth), experiment, &named, |greatest| noise * greatest * normal(rng));
     let text =
         format!("seed {seed}: {truth:?} {values:?}, {parts}, {count} points, spring {has_spring}, noise {noise:.3}");
-    Case { curve: Curve::new(experiment, force).unwrap(), truth, values, text }
+    Case { curve, truth, values, text }
 }
 
 fn sum(fit: &Fit) -> f64 {

@@ -2,27 +2,25 @@
 
 use std::sync::Arc;
 
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
 use viscocontact::states::ElasticStates;
 use viscocontact_identify::{Curve, Fit, FitWarning, Identification, Model, Noise, Nuisance};
 
 use crate::coverage::{ZENER, experiment};
-use crate::random::correlated;
+use crate::random::{self, correlated, from_environment, generator};
 
-/// Number of seeds: `NOISE_SEEDS`, or fewer.
 fn seeds() -> u64 {
-    std::env::var("NOISE_SEEDS").ok().and_then(|text| text.parse().ok()).unwrap_or(30)
+    from_environment("NOISE_SEEDS", 30)
 }
 
 /// A noisy curve of 1000 samples, and the deviation of the independent part of its noise: 1 % of the greatest force without correlation.
 fn noisy(tip: &Arc<ElasticStates>, model: Model, truth: &[(&str, f64)], phi: f64, seed: u64) -> (Curve, f64) {
-    let experiment = experiment(Arc::clone(tip), 1000);
-    let samples = Identification::new(model).respond(&experiment, truth).unwrap();
-    let sigma = 0.01 * samples.iter().fold(0.0, |most: f64, sample| most.max(sample.force));
-    let noise = correlated(samples.len(), sigma, phi, &mut ChaCha8Rng::seed_from_u64(seed));
-    let force = samples.iter().zip(noise).map(|(sample, noise)| sample.force + noise).collect();
-    (Curve::new(experiment, force).unwrap(), sigma * (1.0 - phi * phi).sqrt())
+    let (rng, mut sigma) = (&mut generator(seed), 0.0);
+    let mut noise = correlated(phi, rng);
+    let curve = random::noisy(&Identification::new(model), experiment(Arc::clone(tip), 1000), truth, |greatest| {
+        sigma = 0.01 * greatest;
+        sigma * noise()
+    });
+    (curve, sigma * (1.0 - phi * phi).sqrt())
 }
 
 /// Bias, spread and coverage of the parameters of a Zener body and the contact point.

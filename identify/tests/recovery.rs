@@ -1,16 +1,13 @@
 //! Parameters are found again.
 
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
 use viscocontact::states::ElasticStates;
 use viscocontact_identify::{Curve, Error, Experiment, Identification, Law, Model, Nuisance, Protocol};
 
-use crate::random::normal;
+use crate::random::{exact, from_environment, generator, normal};
 use crate::scenes::scene;
 
-/// Number of random scenes: `RECOVERY_SCENES`, or fewer.
 fn scenes() -> u64 {
-    std::env::var("RECOVERY_SCENES").ok().and_then(|text| text.parse().ok()).unwrap_or(40)
+    from_environment("RECOVERY_SCENES", 40)
 }
 
 /// Without noise, each parameter that 1 % of noise would leave known within 30 % is found to 1e-6.
@@ -20,12 +17,8 @@ fn parameters_are_found_without_noise() {
     for seed in 0..scenes() {
         let scene = scene(seed);
         let known = scene.identification.clone().contact_point(Nuisance::Fixed(scene.contact_point));
-        let samples = match known.respond(&scene.experiment, &scene.named()) {
-            Ok(samples) => samples,
-            Err(error) => panic!("scene {seed}: {error}"),
-        };
-        let force: Vec<f64> = samples.iter().map(|sample| sample.force).collect();
-        let greatest = force.iter().copied().fold(0.0, f64::max);
+        let curve = exact(&known, scene.experiment.clone(), &scene.named());
+        let greatest = curve.force().iter().copied().fold(0.0, f64::max);
         let mut expected = scene.named();
         expected.push(("contact point", scene.contact_point));
         let bounds = scene.identification.bounds(std::slice::from_ref(&scene.experiment), &expected, 0.01 * greatest);
@@ -42,7 +35,7 @@ fn parameters_are_found_without_noise() {
             continue;
         }
         identifiable += 1;
-        let fit = match scene.identification.fit(&[Curve::new(scene.experiment.clone(), force).unwrap()]) {
+        let fit = match scene.identification.fit(&[curve]) {
             Ok(fit) => fit,
             Err(error) => {
                 wrong.push(format!("scene {seed}, {:?}: {error}", scene.identification.model()));
@@ -92,7 +85,7 @@ fn states_need_not_reach_as_deep_as_the_drive() {
 /// times as densely, so that errors of the fit are those of its intervals.
 #[test]
 fn intervals_between_samples_cost_little() {
-    let mut rng = ChaCha8Rng::seed_from_u64(11);
+    let mut rng = generator(11);
     let body = [("E0", 4.0e3), ("Einf", 1.0e3), ("tau", 0.5)];
     let zener = Identification::new(Model::Zener);
     let tips = [
@@ -156,15 +149,13 @@ fn laws_of_other_kinds_are_found() {
         let [first, soon] = [0.0, 1e-9].map(|t| model.modulus(truth, t).unwrap());
         assert!(first.is_finite() && first >= soon && soon > 0.0, "{model}: {first} {soon}");
         if let Model::Stretched | Model::FractionalZener | Model::Custom(_) = model {
-            let exact = if let Model::Custom(law) = model { (law.modulus)(truth, 0.0) } else { truth[0] };
-            assert!((first / exact - 1.0).abs() < 1e-6, "{model}: {first} at once, {exact}");
+            let at_once = if let Model::Custom(law) = model { (law.modulus)(truth, 0.0) } else { truth[0] };
+            assert!((first / at_once - 1.0).abs() < 1e-6, "{model}: {first} for {at_once}");
         }
         for time in [-1.0, f64::NAN, f64::INFINITY] {
             assert!(matches!(model.modulus(truth, time), Err(Error::OutOfRange { field: "time", .. })), "{model}");
         }
-        let samples = fitting.respond(&experiment, &named).unwrap();
-        let force = samples.iter().map(|sample| sample.force).collect();
-        let fit = fitting.fit(&[Curve::new(experiment.clone(), force).unwrap()]).unwrap();
+        let fit = fitting.fit(&[exact(&fitting, experiment.clone(), &named)]).unwrap();
         for (name, value) in named {
             let error = fit.estimate(name).unwrap().value / value - 1.0;
             assert!(error.abs() < 1e-6, "{model}: {name} off by {error:e}");

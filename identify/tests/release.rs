@@ -1,15 +1,13 @@
 //! Pull-offs of random curves are told from drag, drift, tilt and noise that are part of the fit. `RELEASES` (60) chooses the number of curves.
 
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
 use viscocontact::states::ElasticStates;
 use viscocontact_identify::{Curve, Experiment, FitWarning, Identification, Model, Noise, Nuisance, Protocol};
 
-use crate::random::{choice, correlated, logarithmic, uniform};
+use crate::random::{choice, correlated, from_environment, generator, logarithmic, uniform};
 
 /// A random curve, what is to be fitted to it, and its pull over the greatest force and over the noise of a block.
 fn curve(seed: u64) -> (Curve, Identification, f64) {
-    let rng = &mut ChaCha8Rng::seed_from_u64(seed);
+    let rng = &mut generator(seed);
     let radius = logarithmic(rng, [1e-6, 20e-6]);
     let (apart, depth) = (uniform(rng, [0.1, 0.5]) * radius, uniform(rng, [0.05, 0.2]) * radius);
     let (speed, hold) = (logarithmic(rng, [0.1, 10.0]) * radius, uniform(rng, [0.0, 3.0]));
@@ -26,7 +24,10 @@ fn curve(seed: u64) -> (Curve, Identification, f64) {
     let greatest = pure.iter().map(|sample| sample.force).fold(0.0, f64::max);
     let (times, drive) = (experiment.protocol().times(), experiment.protocol().drive());
     let (phi, noise) = (choice(rng, &[0.0, 0.0, 0.9]), logarithmic(rng, [1e-3, 2e-2]));
-    let scatter = correlated(times.len(), noise * greatest, phi, rng);
+    let scatter: Vec<f64> = {
+        let mut scatter = correlated(phi, rng);
+        times.iter().map(|_| noise * greatest * scatter()).collect()
+    };
     let mut of = Identification::new(Model::Zener).contact_point(Nuisance::Fitted).offset(Nuisance::Fitted);
     let mut size = |fitted: fn(Identification, Nuisance) -> Identification| {
         if choice(rng, &[true, false]) {
@@ -58,7 +59,7 @@ fn curve(seed: u64) -> (Curve, Identification, f64) {
 
 #[test]
 fn pull_offs_are_told_from_what_the_fit_explains() {
-    let curves = std::env::var("RELEASES").ok().and_then(|text| text.parse().ok()).unwrap_or(60);
+    let curves = from_environment("RELEASES", 60);
     let (mut with, mut without, mut missed, mut wrong) = (0, 0, Vec::new(), Vec::new());
     for seed in 0..curves {
         let (curve, identification, pull) = curve(seed);

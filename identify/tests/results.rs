@@ -5,10 +5,7 @@ use viscocontact_identify::{
     Curve, Error, Experiment, Fit, FitWarning, Identification, Model, Noise, Nuisance, Protocol, Result, Summary,
 };
 
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
-
-use crate::random::normal;
+use crate::random::{generator, noisy, normal};
 
 /// A map of six curves, one of which has no contact.
 #[test]
@@ -16,13 +13,12 @@ fn each_curve_of_a_map_is_fitted_as_if_alone() -> Result<()> {
     let experiment =
         Experiment::new(Protocol::trapezoid(1.0e-6, [0.5, 2.0, 0.5], 0.05)?, ElasticStates::sphere(5.0e-6)?);
     let zener = Identification::new(Model::Zener);
-    let mut rng = ChaCha8Rng::seed_from_u64(9);
+    let mut rng = generator(9);
     let mut map = Vec::new();
     for k in 0..6 {
         let modulus = if k == 2 { 1.0e-3 } else { 1.0e3 * f64::from(k + 1) };
-        let exact = zener.respond(&experiment, &[("E0", modulus), ("Einf", 0.3 * modulus), ("tau", 0.4)])?;
-        let force = exact.iter().map(|sample| sample.force + 1.0e-10 * normal(&mut rng)).collect();
-        map.push(Curve::new(experiment.clone(), force)?);
+        let body = [("E0", modulus), ("Einf", 0.3 * modulus), ("tau", 0.4)];
+        map.push(noisy(&zener, experiment.clone(), &body, |_| 1.0e-10 * normal(&mut rng)));
     }
     let (done, failed) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let fits = zener.fit_each(&map, |fit| {
@@ -105,10 +101,8 @@ fn fits() -> Result<[Fit; 3]> {
     let experiment =
         Experiment::new(Protocol::trapezoid(1.0e-6, [0.5, 2.0, 0.5], 0.01)?, ElasticStates::sphere(5.0e-6)?);
     let zener = Identification::new(Model::Zener);
-    let exact = zener.respond(&experiment, &[("E0", 2.0e3), ("Einf", 5.0e2), ("tau", 0.4)])?;
-    let mut rng = ChaCha8Rng::seed_from_u64(5);
-    let force = exact.iter().map(|sample| sample.force + 1.0e-10 * normal(&mut rng)).collect();
-    let curve = [Curve::new(experiment, force)?];
+    let (body, mut rng) = ([("E0", 2.0e3), ("Einf", 5.0e2), ("tau", 0.4)], generator(5));
+    let curve = [noisy(&zener, experiment, &body, |_| 1.0e-10 * normal(&mut rng))];
     let fit = |model: Model| Identification::new(model).fit(&curve);
     Ok([zener.fit(&curve)?, fit(Model::PowerLaw { cutoff: 1.0e-4 })?, fit(Model::Stretched)?])
 }

@@ -2,12 +2,10 @@
 
 use std::sync::{Arc, OnceLock};
 
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
 use viscocontact::prelude::*;
 use viscocontact_identify::{Experiment, Identification, Model, Nuisance, Protocol};
 
-use crate::random::{choice, logarithmic, uniform};
+use crate::random::{choice, generator, logarithmic, uniform};
 
 /// An experiment on a material.
 pub struct Scene {
@@ -40,8 +38,7 @@ fn layer() -> Arc<ElasticStates> {
 
 /// A random scene: a tip of a few micrometres, pressed, held, and often retracted.
 pub fn scene(seed: u64) -> Scene {
-    let mut rng = ChaCha8Rng::seed_from_u64(seed);
-    let rng = &mut rng;
+    let rng = &mut generator(seed);
     let tip = match choice(rng, &[0, 1, 2, 3, 4]) {
         0 => ElasticStates::sphere(logarithmic(rng, [1e-6, 20e-6])).unwrap(),
         1 => ElasticStates::cone(uniform(rng, [0.2, 3.0])).unwrap(),

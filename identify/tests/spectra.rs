@@ -2,12 +2,10 @@
 
 use std::sync::Arc;
 
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
 use viscocontact::prelude::*;
 use viscocontact_identify::{Curve, Experiment, Identification, Model, Protocol};
 
-use crate::random::normal;
+use crate::random::{generator, noisy, normal};
 
 const TRUTH: [(&str, f64); 5] = [("Einf", 0.25), ("E1", 0.45), ("tau1", 0.03), ("E2", 0.3), ("tau2", 1.0)];
 
@@ -23,11 +21,8 @@ fn curve(noise: f64, stiffness: f64) -> Curve {
     if stiffness.is_finite() {
         experiment = experiment.with_spring(stiffness).unwrap();
     }
-    let samples = Identification::new(Model::Prony(2)).respond(&experiment, &TRUTH).unwrap();
-    let greatest = samples.iter().fold(0.0, |most: f64, sample| most.max(sample.force));
-    let mut rng = ChaCha8Rng::seed_from_u64(5);
-    let force = samples.iter().map(|sample| sample.force + noise * greatest * normal(&mut rng)).collect();
-    Curve::new(experiment, force).unwrap()
+    let rng = &mut generator(5);
+    noisy(&Identification::new(Model::Prony(2)), experiment, &TRUTH, |greatest| noise * greatest * normal(rng))
 }
 
 /// The modulus over the times of the data, from a fit that has one relaxation time where there are two.

@@ -1,14 +1,12 @@
 //! What a fit states of its parameters.
 
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
 use viscocontact::prelude::*;
 use viscocontact::states::{ElasticStates, Reach, Sweep};
 use viscocontact_identify::{
     Curve, Error, Experiment, FitWarning, Identification, Model, Noise, Nuisance, Protocol, ranked,
 };
 
-use crate::random::normal;
+use crate::random::{exact, generator, noisy, normal};
 
 const BODY: [(&str, f64); 3] = [("E0", 1.0), ("Einf", 0.25), ("tau", 1.0)];
 
@@ -18,11 +16,8 @@ fn curve(rise: f64, count: usize, noise: f64, seed: u64) -> Curve {
     let drive = times.iter().map(|&t: &f64| (t / rise).min(1.0).min(3.0 - t)).collect();
     let sphere = ElasticStates::sphere(9.0 / 16.0).unwrap();
     let experiment = Experiment::new(Protocol::new(times, drive).unwrap(), sphere);
-    let samples = Identification::new(Model::Zener).respond(&experiment, &BODY).unwrap();
-    let greatest = samples.iter().fold(0.0, |most: f64, sample| most.max(sample.force));
-    let mut rng = ChaCha8Rng::seed_from_u64(seed);
-    let force = samples.iter().map(|sample| sample.force + noise * greatest * normal(&mut rng)).collect();
-    Curve::new(experiment, force).unwrap()
+    let rng = &mut generator(seed);
+    noisy(&Identification::new(Model::Zener), experiment, &BODY, |greatest| noise * greatest * normal(rng))
 }
 
 /// Many samples make the sum of squares a parabola: both intervals agree. Few make it a valley that is open to one side, and the
@@ -97,12 +92,11 @@ fn nothing_is_certain_at_a_limit() {
     let times: Vec<f64> = (0..200).map(|k| 0.01 * f64::from(k)).collect();
     let drive = times.iter().map(|t| t.min(1.0)).collect();
     let experiment = Experiment::new(Protocol::new(times, drive).unwrap(), ElasticStates::sphere(9.0 / 16.0).unwrap());
-    let exact = Identification::new(Model::Elastic).respond(&experiment, &[("E", 1.0)]).unwrap();
+    let of = Identification::new(Model::Elastic);
     let mut at_limit = [0; 2];
     for seed in 0..6 {
-        let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        let force = exact.iter().map(|sample| sample.force + 0.01 * normal(&mut rng)).collect();
-        let curve = [Curve::new(experiment.clone(), force).unwrap()];
+        let rng = &mut generator(seed);
+        let curve = [noisy(&of, experiment.clone(), &[("E", 1.0)], |_| 0.01 * normal(rng))];
         let elastic = Identification::new(Model::Elastic).fit(&curve).unwrap().estimates()[0].deviation;
         for (model, exponent) in [(Model::Zener, ""), (Model::Stretched, "beta"), (Model::FractionalZener, "alpha")] {
             let mut fitting = Identification::new(model).fix("tau", 0.3);
@@ -156,10 +150,8 @@ fn data_that_do_not_contain_a_time_are_named() {
     let times: Vec<f64> = (0..300).map(|k| 0.01 * f64::from(k) / 299.0).collect();
     let drive = times.iter().map(|t| 100.0 * t).collect();
     let experiment = Experiment::new(Protocol::new(times, drive).unwrap(), ElasticStates::sphere(9.0 / 16.0).unwrap());
-    let samples = Identification::new(Model::Zener).respond(&experiment, &BODY).unwrap();
-    let mut rng = ChaCha8Rng::seed_from_u64(6);
-    let force: Vec<f64> = samples.iter().map(|sample| sample.force + 0.01 * normal(&mut rng)).collect();
-    let curve = Curve::new(experiment, force).unwrap();
+    let rng = &mut generator(6);
+    let curve = noisy(&Identification::new(Model::Zener), experiment, &BODY, |_| 0.01 * normal(rng));
     let fit = |model: Model| Identification::new(model).fit(std::slice::from_ref(&curve));
     match fit(Model::Zener) {
         Ok(fit) => {
@@ -212,8 +204,7 @@ fn fits_warn_of_contacts_outside_the_model() {
         let experiment = Experiment::new(protocol, tip);
         let zener = Identification::new(Model::Zener);
         let body = [("E0", modulus), ("Einf", 0.25 * modulus), ("tau", 0.3)];
-        let force = zener.respond(&experiment, &body).unwrap().iter().map(|sample| sample.force).collect();
-        let fit = zener.fit(&[Curve::new(experiment, force).unwrap()]).unwrap();
+        let fit = zener.fit(&[exact(&zener, experiment, &body)]).unwrap();
         let texts: Vec<String> =
             fit.warnings().iter().map(ToString::to_string).filter(|text| text.starts_with("curve 0")).collect();
         if expected.is_empty() {

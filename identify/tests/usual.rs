@@ -1,10 +1,11 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use viscocontact::load::LoadHistory;
 use viscocontact::prelude::*;
 use viscocontact_identify::usual::{RampCorrection, hold_relaxation, loading_modulus, oliver_pharr};
 use viscocontact_identify::{Curve, Error, Experiment, Protocol, Result};
+
+use crate::random::marched;
 
 const RADIUS: f64 = 10.0e-6;
 /// Contact moduli [Pa] and relaxation time [s].
@@ -19,13 +20,7 @@ fn measured(experiment: Experiment, creeps: bool) -> Result<Curve> {
     } else {
         Material::incompressible(Elastic::new(0.25 * GLASSY)?)
     };
-    let mut contact = StatesContact::new(experiment.tip(), &body)?;
-    let history = experiment.load_history()?;
-    let mut force = Vec::new();
-    for &time in experiment.protocol().times() {
-        contact.step(time - contact.time(), history.at(time))?;
-        force.push(contact.force());
-    }
+    let force = marched(&experiment, &body, 1)?;
     Curve::new(experiment, force)
 }
 

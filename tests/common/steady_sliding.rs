@@ -221,11 +221,6 @@ impl SteadySliding {
         self.of_recursion(Time::Exact)
     }
 
-    /// A row of them, of this influence at any distance along the motion.
-    pub fn coefficients_of(&self, kernel: &dyn Fn(f64) -> f64) -> Vec<f64> {
-        self.row_of(Time::Exact, kernel)
-    }
-
     /// Coefficients of bodies that end: f(x) = ∫ e^(−s/l) K(x + s) ds/l = I(x) + e^(−d/l) f(x + d), and the like of sums for steps.
     fn of_recursion(&self, time: Time) -> Vec<Vec<f64>> {
         (0..self.cells[1]).map(|j| self.row_of(time, &|x| self.influence(x, j))).collect()

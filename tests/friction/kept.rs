@@ -1,20 +1,20 @@
-//! What is kept of contacts with friction: snapshots, files, runs that go on; what is refused.
+//! What is kept of contacts with friction: runs that go on; what is refused. Snapshots and files are in `time::states_kept`.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use viscocontact::ErrorKind;
-use viscocontact::contact::CheckpointError;
-use viscocontact::output::{CsvHistory, Earlier, Metadata};
 use viscocontact::prelude::*;
 use viscocontact::states::{ElasticStates, Reach, StatesContact, StatesError, Sweep};
 
 use super::dense::{material, relaxation};
 use crate::common::Temporary;
 
-fn contact(friction: f64) -> StatesContact {
-    let states = ElasticStates::sphere(0.5625).unwrap();
-    StatesContact::new(&states, &material(&relaxation(1))).unwrap().with_friction(friction).unwrap()
+pub(crate) fn smooth() -> StatesContact {
+    StatesContact::new(&ElasticStates::sphere(0.5625).unwrap(), &material(&relaxation(1))).unwrap()
+}
+
+pub(crate) fn contact(friction: f64) -> StatesContact {
+    smooth().with_friction(friction).unwrap()
 }
 
 /// To and fro, with one jump.
@@ -23,42 +23,13 @@ fn shear() -> impl LoadHistory {
     PiecewiseLinear::new(&[row(0.0, 0.0), row(0.7, 0.3), row(1.5, -0.2), row(1.5, 0.1), row(3.0, 0.2)]).unwrap()
 }
 
-fn advance(contact: &mut StatesContact, steps: std::ops::Range<u32>) {
+pub(crate) fn advance(contact: &mut StatesContact, steps: std::ops::Range<u32>) {
     for step in steps {
         let wave = (1.7 * f64::from(step)).sin();
         let dt = if step.is_multiple_of(5) { 0.0 } else { 0.1 };
         contact
             .step_sheared(dt, Load::force(1.0 + 0.8 * wave), Load::approach(0.4 * (0.9 * f64::from(step)).sin()))
             .unwrap();
-    }
-}
-
-#[test]
-fn sheared_contacts_come_back_to_the_last_bit() {
-    let folder = Temporary::folder("friction");
-    let path = folder.join("contact");
-    let mut first = contact(0.4);
-    advance(&mut first, 0..20);
-    let start = first.snapshot();
-    first.save(&path).unwrap();
-    advance(&mut first, 20..40);
-    let (end, work) = (format!("{first:?}"), first.lateral_work());
-    first.restore(&start).unwrap();
-    advance(&mut first, 20..40);
-    assert_eq!((format!("{first:?}"), first.lateral_work()), (end.clone(), work));
-    let mut other = contact(0.4);
-    other.resume(&path).unwrap();
-    advance(&mut other, 20..40);
-    assert_eq!((format!("{other:?}"), other.lateral_work()), (end, work));
-    // of another coefficient, or of none
-    let smooth = StatesContact::new(first.states(), &material(&relaxation(1))).unwrap().with_linear_steps();
-    for mut wrong in [contact(0.5), smooth] {
-        match wrong.resume(&path) {
-            Err(Error::Checkpoint { cause: CheckpointError::OtherScene { what, .. }, .. }) => {
-                assert_eq!(what, "friction")
-            }
-            resumed => panic!("{resumed:?}"),
-        }
     }
 }
 
@@ -163,8 +134,7 @@ fn what_friction_does_not_cover_is_refused() {
 /// A contact that was pressed before gets friction: its groups have not been sheared.
 #[test]
 fn friction_begins_at_any_time() {
-    let states = ElasticStates::sphere(0.5625).unwrap();
-    let mut late = StatesContact::new(&states, &material(&relaxation(1))).unwrap().with_linear_steps();
+    let mut late = smooth().with_linear_steps();
     let mut early = contact(0.4);
     for step in 0..12 {
         let (dt, load) = (if step == 0 { 0.0 } else { 0.3 }, Load::force(1.0 + 0.8 * (1.3 * f64::from(step)).sin()));
@@ -193,37 +163,4 @@ fn cycles_keep_few_groups() {
     }
     println!("at most {most} groups");
     assert!(most < 2000);
-}
-
-/// A table of its history has what acts along the surface.
-#[test]
-fn tables_have_what_acts_along_the_surface() {
-    let folder = Temporary::folder("friction-table");
-    let (path, mut contact) = (folder.join("history.csv"), contact(0.4));
-    let mut table =
-        CsvHistory::create(&path, &Metadata::new("rubbed"), &contact, &["twice [N]"], Earlier::Refuse).unwrap();
-    for _ in 0..3 {
-        let report = contact.step_sheared(0.1, Load::force(1.0), Load::force(0.3)).unwrap();
-        table.record(&contact, &report, &[2.0 * report.force]).unwrap();
-    }
-    let smooth = StatesContact::new(contact.states(), &material(&relaxation(1))).unwrap();
-    let report = smooth.report(0.0, Load::force(0.0));
-    assert_eq!(table.record(&smooth, &report, &[0.0]).unwrap_err().kind(), ErrorKind::File);
-    let text = std::fs::read_to_string(path).unwrap();
-    let rows: Vec<Vec<&str>> = text.lines().skip(1).map(|line| line.split(',').collect()).collect();
-    assert_eq!(rows.len(), 4);
-    let column = |name: &str| rows[0].iter().position(|heading| *heading == name).unwrap();
-    let value = |row: usize, name: &str| rows[row][column(name)].parse::<f64>().unwrap();
-    let work = contact.lateral_work();
-    let along = [
-        ("force along [N]", contact.lateral_force()),
-        ("displacement along [m]", contact.lateral_displacement()),
-        ("slid [m]", 0.0),
-        ("stick area [m2]", contact.stick_area()),
-        ("work along [J]", work.work),
-        ("loss by slip [J]", work.slip),
-        ("twice [N]", 2.0 * contact.force()),
-    ];
-    assert!(along.iter().all(|(name, expected)| value(3, name) == *expected));
-    assert!(value(1, "displacement along [m]") < value(3, "displacement along [m]"));
 }

@@ -3,7 +3,7 @@
 mod bodies;
 mod dense;
 mod gradients;
-mod kept;
+pub(crate) mod kept;
 mod runs;
 mod space;
 mod space_known;

@@ -18,7 +18,7 @@ pub fn targets() -> Vec<Target> {
         Target { name: "rough", short: 500, run: rough },
         Target { name: "history", short: 3000, run: history },
         Target { name: "kernel", short: 1000, run: kernel },
-        Target { name: "analytic", short: 4000, run: analytic },
+        Target { name: "analytic", short: 12000, run: analytic },
     ]
 }
 

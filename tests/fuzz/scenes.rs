@@ -11,7 +11,7 @@ use crate::source::Source;
 
 pub fn targets() -> Vec<Target> {
     vec![
-        Target { name: "scene_steps", short: 1200, run: |source| steps(source, false) },
+        Target { name: "scene_steps", short: 2000, run: |source| steps(source, false) },
         Target { name: "scene_fitted", short: 30, run: |source| steps(source, true) },
         Target { name: "scene_follow", short: 600, run: follow },
         Target { name: "scene_moving", short: 600, run: moving },

@@ -2,7 +2,7 @@
 
 use crate::common::refused::{field, refused};
 use crate::common::watched_runs::seen;
-use crate::common::{builder_on, maxwell, sphere, sphere_on};
+use crate::common::{builder_on, maxwell, sphere_on};
 use std::process::Command;
 
 use viscocontact::ErrorKind;
@@ -51,13 +51,6 @@ fn build_says_what_a_material_cannot_do() {
             assert!(error.to_string().contains("Builder::times"), "{error}");
         }
     }
-    let error = viscocontact::analytic::GrowingSphere::step(10.0e-3, &closure(), 1.0).unwrap_err();
-    let Error::Material(MaterialError::NoExponentialSeries { rheology, what: "the solution for a growing contact" }) =
-        error
-    else {
-        panic!()
-    };
-    assert!(rheology.starts_with("FnRheology"), "{rheology}");
     let timed = |times| builder_on(grid(), closure()).times(times).build().map(drop);
     assert_eq!(timed(1e-3..=1e3), Ok(()));
     for times in [0.0..=1.0, -1.0..=1.0, f64::NAN..=1.0, 1.0..=f64::INFINITY, 1e-200..=1.0, 2.0..=1.0] {
@@ -102,32 +95,14 @@ fn a_bad_geometry_leaves_the_old_one() {
 }
 
 #[test]
-fn a_moved_indenter_presses_elsewhere() {
-    let mut contact = sphere_on(grid(), maxwell(), Settings::default());
-    contact.step(0.0, Load::force(0.1)).unwrap();
-    contact.set_geometry(&Shifted::new(sphere(), [0.5e-3, -0.5e-3]).unwrap()).unwrap();
-    contact.step(0.1, Load::force(0.1)).unwrap();
-    let center = contact.fields().moment().map(|moment| moment / contact.force());
-    // the dent left behind makes it lean back a little
-    assert!((0.4e-3..0.51e-3).contains(&center[0]) && (-0.51e-3..-0.4e-3).contains(&center[1]), "{center:?}");
-}
-
-#[test]
 fn loads_and_shapes_are_refused_by_name() {
     let at = |t: f64, w: f64| (t, Load::force(w));
-    let table = |rows: &[(f64, Load)]| PiecewiseLinear::new(rows);
-    for (rows, index) in [(vec![at(0.0, 1.0), at(-1.0, 1.0)], 1), (vec![at(0.0, 1.0), at(0.0, 2.0), at(0.0, 3.0)], 2)] {
-        assert!(matches!(table(&rows), Err(Error::OutOfOrder { index: found, .. }) if found == index));
-    }
+    let twice = PiecewiseLinear::new(&[at(0.0, 1.0), at(0.0, 2.0), at(0.0, 3.0)]);
+    assert!(matches!(twice, Err(Error::OutOfOrder { index: 2, .. })));
     let load = Load::force(1.0);
     refused([
-        (table(&[at(0.0, 1.0)]).err(), "load table"),
-        (table(&[at(0.0, 1.0), at(f64::NAN, 1.0)]).err(), "load table times"),
-        (table(&[at(0.0, 1.0), at(1.0, f64::INFINITY)]).err(), "normal force"),
         (Ramp::new(load, load, 0.0).err(), "duration of the ramp"),
-        (Sinusoid::new(load, load, -1.0).err(), "frequency"),
         (Sinusoid::about(load, -1.0, 1.0).err(), "amplitude"),
-        (Periodic::new(&[at(1.0, 1.0), at(1.0, 2.0)]).err(), "period"),
         (Periodic::square(load, load, 1.0, 1.0).err(), "duty cycle"),
         (Periodic::square(load, load, f64::NAN, 0.5).err(), "period"),
         (Periodic::triangle(load, load, -1.0).err(), "period"),
@@ -142,8 +117,6 @@ fn loads_and_shapes_are_refused_by_name() {
     ]);
     let far = Shifted::new(Sphere::new(1e300).unwrap(), [1e271, 1e300]).unwrap();
     assert!(!far.initial_gap(0.1, 0.1).is_nan());
-    let fallen = Sinusoid::new(Load::approach(3.0e-6), Load::approach(2.0e-6), 1.0);
-    assert!(matches!(fallen, Err(Error::OutOfOrder { value: 2.0e-6, previous: 3.0e-6, .. })), "{fallen:?}");
 }
 
 #[test]

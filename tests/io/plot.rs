@@ -4,7 +4,6 @@ use crate::common::refused::{field, refused};
 use crate::common::{Temporary, builder_of, contact_of, maxwell, sphere};
 use approx::assert_abs_diff_eq;
 use std::fs;
-use std::path::Path;
 
 use viscocontact::ErrorKind;
 use viscocontact::observe::Stress;
@@ -225,33 +224,19 @@ fn narrow_logarithmic_axes_have_numbers() {
     }
 }
 
+/// What maps and charts refuse when they are saved is in `clauses`.
 #[test]
 fn bad_pictures_are_refused_by_name() {
     let grid = Grid::square(2, 1.0).unwrap();
-    let map = Map::new(&grid, vec![1.0, 2.0, f64::NAN, 4.0], "q").unwrap();
-    assert_eq!(map.range, [1.0, 4.0]);
-    for range in [[1.0, 1.0], [2.0, 1.0], [f64::NAN, 1.0], [0.0, f64::INFINITY]] {
-        let mut map = map.clone();
-        map.range = range;
-        assert!(field(map.draw()).ends_with("end of the colour scale"));
-    }
+    assert_eq!(Map::new(&grid, vec![1.0, 2.0, f64::NAN, 4.0], "q").unwrap().range, [1.0, 4.0]);
     let contact = |side: f64| contact_of(&sphere(), Grid::square(8, side).unwrap(), maxwell(), Settings::default());
     let section = contact(1.0).fields().stress().unwrap().on_section(Axis::X1, 0.0, &[0.1, 0.2]).unwrap();
     assert!(Map::section(&contact(1.0), &section, Stress::tresca, "q").is_ok());
-    let empty = Chart::new("", "x", "y", Legend::UpperLeft);
-    let mut far = empty.clone();
-    far.add("", COLORS[0], Style::Line, vec![(1.0, 1e200)]);
     refused([
-        (Map::draw_row(&[]).err(), "maps of a row"),
         (Map::section(&contact(2.0), &section, Stress::tresca, "q").err(), "position of a section"),
-        (Map::draw_row(&vec![map; 40]).err(), "pixels along a side of a picture"),
         (Map::new(&grid, vec![0.0; 3], "q").err(), "values of a map"),
         (Map::new(&grid, vec![1e101; 4], "q").err(), "value of a map"),
-        (empty.draw().err(), "points to draw in the chart"),
-        (far.draw().err(), "y of a point in a chart"),
     ]);
-    let saved = Chart::profile(&ball(), Axis::X1, 0.0).unwrap().save(Path::new("/no/such/folder/a.png"));
-    assert!(matches!(saved, Err(Error::Output(_))));
 }
 
 #[test]

@@ -33,11 +33,15 @@ fn assert_reciprocal(creep: &CreepSpectrum) {
 fn every_model_evaluates_its_formula() {
     let t: f64 = 0.7;
     let kelvin = |g: f64, eta: f64| (1.0 - (-t * g / eta).exp()) / g;
-    let cases: [(&dyn Rheology, f64); 8] = [
+    let cases: [(&dyn Rheology, f64); 12] = [
         (&Elastic::new(2.0).unwrap(), 0.5),
         (&Maxwell::with_time(2.0, 2.5).unwrap(), 0.5 + t / 5.0),
         (&KelvinVoigt::with_time(2.0, 2.5).unwrap(), kelvin(2.0, 5.0)),
+        (&Maxwell::new(2.0, 5.0).unwrap(), 0.5 + t / 5.0),
+        (&KelvinVoigt::new(2.0, 5.0).unwrap(), kelvin(2.0, 5.0)),
         (&Zener::new(2.0, 3.0, 4.0).unwrap(), 0.5 + kelvin(3.0, 4.0)),
+        (&Zener::with_time(2.0, 3.0, 4.0 / 3.0).unwrap(), 0.5 + kelvin(3.0, 4.0)),
+        (&Burgers::with_times((2.0, 2.5), (3.0, 4.0 / 3.0)).unwrap(), 0.5 + t / 5.0 + kelvin(3.0, 4.0)),
         (&Burgers::new(2.0, 5.0, 3.0, 4.0).unwrap(), 0.5 + t / 5.0 + kelvin(3.0, 4.0)),
         (&GeneralizedKelvin::new(0.5, 0.2, &[(1.0 / 3.0, 4.0 / 3.0)]).unwrap(), 0.5 + 0.2 * t + kelvin(3.0, 4.0)),
         (&FnRheology::new(|t| 1.0 + t), 1.7),

@@ -129,41 +129,6 @@ fn a_law_has_its_factors_at_every_temperature() {
     assert!((rod.contact_compliance(0.0) * 4.4e6 / 0.75 - 1.0).abs() < 1e-12);
 }
 
-/// A sweep at a temperature is the contact built at that temperature.
-#[test]
-fn sweeps_at_temperatures_have_the_moduli_there() {
-    let terms = [(30.0e6, 1.0e-4), (10.0e6, 1.0e-2), (3.0e6, 1.0)];
-    let rubber = || GeneralizedMaxwell::new(1.0e6, &terms).unwrap();
-    let grid = || Grid::square(24, 4.0e-3).unwrap();
-    let law = TimeTemperature::wlf(8.61, 200.4, REFERENCE).unwrap();
-    let law = law.with_vertical_factors(&[(280.0, 0.9), (REFERENCE, 1.0), (340.0, 1.3)]).unwrap();
-    let (speeds, loads) = ([[1.0e-3, 0.0], [0.1, 0.0]], [Load::force(0.3), Load::approach(40.0e-6)]);
-    let kelvins = [285.0, REFERENCE, 340.0];
-    let build = |material: Material| builder_on(grid(), material).build_sliding().unwrap();
-    for load in loads {
-        let mut swept = build(Material::incompressible(rubber()));
-        let table = swept.sweep(&SlidingSweep::new(speeds, [load]).at_temperatures(law.clone(), kelvins)).unwrap();
-        for (k, state) in table.states().iter().enumerate() {
-            let kelvin = kelvins[k / speeds.len()];
-            let mut own = build(Material::incompressible(law.at(rubber(), kelvin).unwrap()));
-            let expected = own.at(speeds[k % speeds.len()], load).unwrap();
-            let found = state.report;
-            let pairs = [
-                (found.force, expected.force),
-                (found.approach, expected.approach),
-                (found.lateral_force[0], expected.lateral_force[0]),
-                (found.contact_area, expected.contact_area),
-            ];
-            assert!(pairs.iter().all(|(a, b)| (a / b - 1.0).abs() < 1e-5), "{kelvin}: {found:?} {expected:?}");
-            if k + 1 == table.states().len() {
-                let [shown, own] = [swept.fields(), own.fields()];
-                assert!((shown.force() / own.force() - 1.0).abs() < 1e-5 && shown.load() == load);
-                assert!((shown.max_pressure() / own.max_pressure() - 1.0).abs() < 1e-4);
-            }
-        }
-    }
-}
-
 /// Where a factor belongs to one body of two, to the shear and not to the bulk, or to a temperature that changes, it is refused.
 #[test]
 fn what_vertical_factors_do_not_describe_is_refused() {

@@ -48,23 +48,6 @@ fn bodies_are_apart_when_no_attraction_is_left_to_overcome() {
     assert!(2 * pulling > count, "{pulling} of {count}");
 }
 
-/// Bodies without attraction are apart without a cell in contact, on states without level.
-#[test]
-fn bodies_without_attraction_are_apart_at_once() {
-    fn parted(mut contact: impl Contact) -> [bool; 3] {
-        [1.0e-5, -1.0e-5, 2.0e-5].map(|approach| {
-            contact.step(1.0, Load::approach(approach)).unwrap();
-            contact.is_separated()
-        })
-    }
-    let (sphere, body) =
-        (Sphere::new(10.0e-3).unwrap(), Material::incompressible(Maxwell::with_time(1.0e6, 1.0).unwrap()));
-    let builder = ViscoelasticContact::builder(Grid::square(24, 2.0e-3).unwrap()).geometry(&sphere);
-    assert_eq!(parted(builder.material(body.clone()).build().unwrap()), [false, true, false]);
-    let states = ElasticStates::sphere(10.0e-3).unwrap();
-    assert_eq!(parted(StatesContact::new(&states, &body).unwrap()), [false, true, false]);
-}
-
 /// A punch that tilts freely peels off under an eccentric pull: at the same force, however long the steps are that lead there.
 #[test]
 fn an_eccentric_pull_peels_at_one_force() {

@@ -91,18 +91,6 @@ fn loads_that_would_topple_are_refused_at_once() {
     assert!(table.tilt()[0] > 0.0);
 }
 
-#[test]
-fn wrong_numbers_of_bodies_and_loads_are_refused() {
-    let mut contact = punch(16);
-    let error = contact.step(0.0, [Load::force(1.0), Load::force(1.0)]).unwrap_err();
-    let field = "loads of the rigid bodies";
-    assert_eq!(error, Error::WrongLength { field, len: 2, expected: 1, exact: true });
-    let shape = FlatPunch::circular(RADIUS).unwrap();
-    let error = contact.set_geometries(&[&shape, &shape]).unwrap_err();
-    let field = "geometries of the rigid bodies";
-    assert_eq!(error, Error::WrongLength { field, len: 2, expected: 1, exact: true });
-}
-
 /// More cycles than there are numbers for are a load all the same.
 #[test]
 fn a_sinusoid_of_endless_cycles_stays_between_its_ends() {

@@ -8,5 +8,4 @@ mod sliding_bodies;
 mod sliding_chains;
 mod sliding_cost;
 mod sliding_limits;
-mod sliding_marched;
 mod steady;

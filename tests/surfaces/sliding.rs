@@ -1,4 +1,4 @@
-//! Steady motions as one problem, against dense ones, closed forms and limits. `SLIDING_SCENES` (60) random sliders and rollers, `SLIDING_SEED` (1).
+//! Steady motions as one problem, against closed forms and limits; against dense problems on all bodies in `sliding_chains`.
 
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
@@ -6,10 +6,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use super::steady::Scene;
+use crate::common::builder_of;
 use crate::common::refused::{not_covered, refused};
-use crate::common::steady_sliding::Time;
-use crate::common::{Draws, builder_of, from_environment};
 use viscocontact::adhesion::ExponentialAttraction;
 use viscocontact::contact::Builder;
 use viscocontact::prelude::*;
@@ -20,8 +18,12 @@ use viscocontact::sliding::SlidingSweep;
 const WAVES: [[f64; 4]; 4] =
     [[1.0, 0.0, 0.3, 2e-4], [2.0, 1.0, 1.0, 1e-4], [-1.0, 3.0, 2.0, 1e-4], [3.0, 3.0, 4.0, 5e-5]];
 
+fn body() -> GeneralizedKelvin {
+    GeneralizedKelvin::new(1e-6, 0.0, &[(2e-6, 1e-3), (3e-6, 0.1), (4e-6, 30.0)]).unwrap()
+}
+
 fn rubber() -> Material {
-    Material::incompressible(GeneralizedKelvin::new(1e-6, 0.0, &[(2e-6, 1e-3), (3e-6, 0.1), (4e-6, 30.0)]).unwrap())
+    Material::incompressible(body())
 }
 
 fn on_waves(cells: usize, material: Material) -> Builder {
@@ -88,55 +90,6 @@ fn slow_and_fast_motions_are_elastic() {
             assert!(differ < 1e-6 * most, "{load} {speed}: {differ} of {most}");
             assert!(report.friction().abs() < 1e-8);
         }
-    }
-}
-
-/// Random sliders and rollers against a dense problem with the same mesh.
-#[test]
-fn random_motions_are_those_of_a_dense_problem() {
-    let (scenes, seed) = (from_environment("SLIDING_SCENES", 60), from_environment("SLIDING_SEED", 1));
-    let (mut compared, mut worst) = (0, [0.0_f64; 4]);
-    for number in 0..scenes {
-        let mut draws = Draws::new(1000 * seed + number);
-        let mut scene = Scene::draw(&mut draws, false);
-        scene.fluidity = 0.0;
-        let mut sliding = scene.builder().settings(Settings::default().with_tolerance(1e-9)).build_sliding().unwrap();
-        let velocity = scene.by_axis(scene.velocity, 0.0);
-        let report = sliding
-            .at(velocity, Load::force(scene.force))
-            .unwrap_or_else(|error| panic!("{number} {scene:?}: {error}"));
-        let exact = scene.reference(Time::Exact).expect("the dense problem has a solution");
-        let contact = sliding.fields();
-        // the dense problem has the cells about the middle of the contact, along the motion
-        let (grid, count) = (contact.grid(), exact.pressure.len() / scene.across);
-        let [n1, n2] = grid.cells();
-        let dense = |i: usize, j: usize| {
-            let [x1, x2] = grid.center(i, j);
-            let ([x, _], [_, aside]) = (scene.by_axis(x1, x2), scene.by_axis(i, j));
-            let place = (scene.velocity * x - scene.middle() - 0.5 + 0.5 * count as f64).round();
-            if place < 0.0 || place >= count as f64 {
-                0.0
-            } else {
-                exact.pressure[place as usize * scene.across + aside]
-            }
-        };
-        let cells = (0..n1).flat_map(|i| (0..n2).map(move |j| (i, j)));
-        let differ: f64 = cells.map(|(i, j)| (contact.pressure()[i * n2 + j] - dense(i, j)).abs()).sum();
-        let lateral = scene.velocity * contact.lateral_force(&scene.shape())[scene.axis.index()];
-        let errors = [
-            differ / scene.force,
-            (report.approach / exact.approach - 1.0).abs(),
-            (lateral / scene.force - exact.friction).abs(),
-            (contact.force() / scene.force - 1.0).abs(),
-        ];
-        println!("{number}: {errors:?} {report}, {} sets, {} transforms", report.sets, report.transforms);
-        compared += 1;
-        (0..4).for_each(|k| worst[k] = worst[k].max(errors[k]));
-    }
-    println!("{compared} scenes, worst {worst:?}");
-    assert_eq!(compared, scenes);
-    for (error, most) in worst.into_iter().zip([1e-6, 1e-7, 1e-7, 1e-12]) {
-        assert!(error < most, "{worst:?}");
     }
 }
 
@@ -297,30 +250,46 @@ fn what_is_not_steady_is_refused() {
     assert!((memory(512) / memory(256) / 4.0 - 1.0).abs() < 0.05, "{} {}", memory(256), memory(512));
 }
 
-/// A sweep has the states of single problems, at each temperature those of the shifted velocity; it ends where its progress says so, and its file can be read back.
+/// A sweep has the states of single problems, at each temperature those of the body there, vertical factors included, and shows the last; it ends where its
+/// progress says so, and its file can be read back.
 #[test]
 fn a_sweep_is_its_states() {
     let law = TimeTemperature::wlf(8.61, 200.4, 298.15).unwrap();
-    let (velocities, loads) = ([[1e-2, 0.0], [1.0, 1.0], [30.0, -4.0]], [Load::force(20.0), Load::force(60.0)]);
-    let kelvins = [273.15, 313.15];
+    let law = law.with_vertical_factors(&[(270.0, 0.9), (298.15, 1.0), (320.0, 1.3)]).unwrap();
+    let (velocities, loads) = ([[1e-2, 0.0], [1.0, 1.0], [30.0, -4.0]], [Load::force(20.0), Load::approach(-1e-4)]);
+    let kelvins = [273.15, 298.15, 313.15];
     let sweep = SlidingSweep::new(velocities, loads).at_temperatures(law.clone(), kelvins);
-    let mut last = 0.0;
-    let table = wavy(16)
+    let (mut last, mut swept) = (0.0, wavy(16));
+    let table = swept
         .sweep_with(&sweep, |_, share| {
             assert!(share > last);
             last = share;
             ControlFlow::Continue(())
         })
         .unwrap();
-    assert!(last == 1.0 && table.states().len() == 12);
+    assert!(last == 1.0 && table.states().len() == 18);
     for (k, state) in table.states().iter().enumerate() {
         assert_eq!(state.temperature, Some(kelvins[k / 6]));
         assert_eq!((state.load, state.report.velocity), (loads[k / 3 % 2], velocities[k % 3]));
-        let shift = law.shift_factor(kelvins[k / 6]).unwrap();
-        let single = wavy(16).at(state.report.velocity.map(|v| v * shift), state.load).unwrap();
+        let there = Material::incompressible(law.at(body(), kelvins[k / 6]).unwrap());
+        let mut own = on_waves(16, there).build_sliding().unwrap();
+        let single = own.at(state.report.velocity, state.load).unwrap();
         assert!((state.report.friction() - single.friction()).abs() < 1e-8 * single.friction().abs().max(1e-3), "{k}");
         assert!((state.report.mean_gap - single.mean_gap).abs() < 1e-10);
         assert_eq!(state.report.contact_cells, single.contact_cells);
+        let (found, exact) = (state.report, single);
+        for (found, exact) in [
+            (found.force, exact.force),
+            (found.approach, exact.approach),
+            (found.lateral_force[0], exact.lateral_force[0]),
+        ] {
+            assert!((found / exact - 1.0).abs() < 1e-5, "{k}: {found} {exact}");
+        }
+        if k == 17 {
+            let [shown, own] = [swept.fields(), own.fields()];
+            assert!((shown.force() / own.force() - 1.0).abs() < 1e-5 && shown.load() == state.load);
+            assert!((shown.max_pressure() / own.max_pressure() - 1.0).abs() < 1e-4);
+        }
     }
     for threads in [1, 3] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();

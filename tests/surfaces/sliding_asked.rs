@@ -4,13 +4,14 @@
 
 use std::f64::consts::TAU;
 
-use crate::common::moving_bodies::{Base, Bodies, Creep, Influence};
+use super::sliding_chains::errors;
+use crate::common::moving_bodies::{Base, Bodies, Creep};
 use crate::common::{Draws, Ratios, builder_of, from_environment};
 use viscocontact::Layer;
 use viscocontact::motion::CounterMotion;
 use viscocontact::num_complex::Complex64;
 use viscocontact::prelude::*;
-use viscocontact::sliding::{SlidingError, SlidingReport};
+use viscocontact::sliding::SlidingError;
 
 fn scenes() -> impl Iterator<Item = (u64, Draws)> {
     let (count, seed) = (from_environment("SLIDING_ASKED", 12), from_environment("SLIDING_SEED", 1));
@@ -39,31 +40,7 @@ fn waves(draws: &mut Draws, bodies: &Bodies) -> impl Fn(f64, f64) -> f64 + Clone
 
 fn bodies(periodic: bool, cells: [usize; 2], creep: Creep, nu: f64) -> Bodies {
     let (periodic, base, spacing) = ([periodic; 2], Base::None, [1.0, 1.2]);
-    Bodies { periodic, cells, spacing, creep, nu, base, base_nu: 0.5, thickness: 1.0, datum: 1e4 }
-}
-
-/// How far a state is from the contact problem of the influences together, in tolerances, and its drag from the sum of theirs, of itself.
-fn errors(influences: &[Influence], gap: &[f64], sliding: &SteadySliding, report: &SlidingReport) -> [f64; 3] {
-    let contact = sliding.fields();
-    let (p, area) = (contact.pressure(), contact.grid().cell_area());
-    let each: Vec<_> = influences.iter().map(|own| own.displacement(p)).collect();
-    let height = |k: usize| each.iter().map(|u| u[k]).sum::<f64>() + gap[k] - report.approach;
-    let (on, off): (Vec<usize>, Vec<usize>) = (0..p.len()).partition(|&k| p[k] > 0.0);
-    let mean = on.iter().map(|&k| gap[k]).sum::<f64>() / on.len() as f64;
-    let rms = |of: &dyn Fn(usize) -> f64| (on.iter().map(|&k| of(k).powi(2)).sum::<f64>() / on.len() as f64).sqrt();
-    let range = |of: &dyn Fn(usize) -> f64| {
-        let all = || (0..p.len()).map(of);
-        all().fold(f64::NEG_INFINITY, f64::max) - all().fold(f64::INFINITY, f64::min)
-    };
-    // a single cell closes no range of the gap
-    let least = 1e-4 * range(&|k| gap[k]).max(range(&|k| each.iter().map(|u| u[k]).sum()));
-    let unit = contact.settings().tolerance() * rms(&|k| gap[k] - mean).max(least);
-    let drags = influences.iter().map(|own| own.drag(p).map(|own| own * area));
-    let drag = drags.fold([0.0; 2], |sum, own| [sum[0] + own[0], sum[1] + own[1]]);
-    let differ = (0..2).map(|axis| (drag[axis] - report.lateral_force[axis]).abs()).fold(0.0, f64::max);
-    let most = drag[0].abs().max(drag[1].abs());
-    let penetration = off.iter().map(|&k| -height(k)).fold(0.0, f64::max);
-    [rms(&height) / unit, penetration / unit, if most > 0.0 { differ / most } else { differ }]
+    Bodies { periodic, cells, spacing, creep, nu, base, base_nu: 0.5, thickness: 1.0, datum: 1e4, as_line: false }
 }
 
 /// Random pairs: the points of a counter-body that slides rest under the pressure, those of one that rolls pass it as those of the body.
@@ -106,7 +83,8 @@ fn counter_bodies_slide_or_roll_as_dense_problems_of_two_bodies_do() {
             let mut sliding = builder().counter_motion(motion).build_sliding().unwrap();
             let report = sliding.at(velocity, load).unwrap_or_else(|error| panic!("{number} {motion:?}: {error}"));
             let influences = [own.influence(velocity), counter.influence(of_counter)];
-            let found = errors(&influences, &gap, &sliding, &report);
+            let own = errors(&influences, &gap, load, &sliding, &report);
+            let found = [own.gap, own.penetration, own.drag];
             let name = format!("{number} {motion:?} {report}");
             (0..3).for_each(|k| all[k].push(found[k], &name));
             report.friction()

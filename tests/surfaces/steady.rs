@@ -10,16 +10,16 @@ use viscocontact::contact::{Builder, Edge, Warnings};
 use viscocontact::prelude::*;
 
 /// Glassy compliance of the contact \[1/Pa\].
-pub(super) const GLASSY: f64 = 0.25e-6;
+const GLASSY: f64 = 0.25e-6;
 
 /// A slider or roller on cells with sides of 1 m. It moves by one cell in 1 s.
 #[derive(Debug, Clone)]
-pub(super) struct Scene {
-    pub(super) below: Below,
+struct Scene {
+    below: Below,
     /// Whether u is linear in time within all steps.
-    pub(super) linear: bool,
-    pub(super) axis: Axis,
-    pub(super) velocity: f64,
+    linear: bool,
+    axis: Axis,
+    velocity: f64,
     /// Waves under a periodic slider: periods along the motion and across it, phase, height. Else it is a ball or a cylinder.
     waves: Vec<[f64; 4]>,
     /// Half the length of the relaxed contact of a ball or a cylinder.
@@ -27,17 +27,17 @@ pub(super) struct Scene {
     /// Cells behind the middle of the contact and ahead of it, and across the motion.
     behind: usize,
     ahead: usize,
-    pub(super) across: usize,
+    across: usize,
     /// Compliance relative to the glassy one, and v τ, of each term.
-    pub(super) terms: Vec<(f64, f64)>,
-    pub(super) fluidity: f64,
-    pub(super) force: f64,
+    terms: Vec<(f64, f64)>,
+    fluidity: f64,
+    force: f64,
     tolerance: f64,
 }
 
 impl Scene {
     /// `easy`: no free dashpot, a track of twenty times the longest v τ, and a grid that reaches by ten times as much behind.
-    pub(super) fn draw(draws: &mut Draws, easy: bool) -> Scene {
+    fn draw(draws: &mut Draws, easy: bool) -> Scene {
         let below = match draws.below(4) {
             0 | 1 => Below::Periodic,
             2 => Below::HalfSpace,
@@ -119,12 +119,12 @@ impl Scene {
         }
     }
 
-    pub(super) fn length(&self) -> usize {
+    fn length(&self) -> usize {
         self.behind + self.ahead
     }
 
     /// In the order of x1 and x2, from along and across the motion.
-    pub(super) fn by_axis<T>(&self, along: T, across: T) -> [T; 2] {
+    fn by_axis<T>(&self, along: T, across: T) -> [T; 2] {
         if self.axis == Axis::X1 { [along, across] } else { [across, along] }
     }
 
@@ -139,11 +139,11 @@ impl Scene {
     }
 
     /// The middle of the contact, along the motion from the middle of the grid.
-    pub(super) fn middle(&self) -> f64 {
+    fn middle(&self) -> f64 {
         0.5 * (self.behind as f64 - self.ahead as f64)
     }
 
-    pub(super) fn shape(&self) -> impl Geometry + 'static {
+    fn shape(&self) -> impl Geometry + 'static {
         let scene = self.clone();
         let middle = self.middle();
         FnGeometry::new(move |x1: f64, x2: f64| {
@@ -153,7 +153,7 @@ impl Scene {
     }
 
     /// The contact, but for its settings.
-    pub(super) fn builder(&self) -> Builder {
+    fn builder(&self) -> Builder {
         let cells = self.by_axis(self.length(), self.across);
         let grid = Grid::new(cells, cells.map(|count| count as f64)).unwrap();
         let kernel = match self.below {
@@ -188,7 +188,7 @@ impl Scene {
         (contact, report.figures.wake)
     }
 
-    pub(super) fn reference(&self, time: Time) -> Option<SteadyState> {
+    fn reference(&self, time: Time) -> Option<SteadyState> {
         // cells about the middle of the contact that it may touch, of which there is one behind for each ahead
         let count = if self.waves.is_empty() { 2 * (2.0 * self.half) as usize } else { self.length() };
         let at = |k: usize, shift: f64| {

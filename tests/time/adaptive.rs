@@ -73,30 +73,6 @@ fn errors_are_what_was_asked_for() {
     }
 }
 
-/// Closures do not name their corners: a short pulse and a corner are found all the same.
-#[test]
-fn pulses_and_corners_of_closures_are_found() {
-    let pulse = FnHistory::new(|t: f64| Load::force(0.2 + 0.8 * (-((t - 3.0) / 0.05).powi(2)).exp()));
-    let scene = scenes().into_iter().find(|scene| scene.name == "Zener, held").unwrap();
-    let mut contact = scene.contact(32, 1e-6);
-    let mut follow = contact.follow(&pulse, Stepping::adaptive(1e-3), 5.0);
-    let (mut peak, mut steps) = (0.0_f64, 0);
-    while let Some(report) = follow.next_step().unwrap() {
-        peak = peak.max(report.force);
-        steps += 1;
-    }
-    println!("{steps} steps, greatest force {peak:.4}");
-    assert!(peak > 0.99, "{peak}");
-    let corner = FnHistory::new(|t: f64| Load::force(0.2 + (t - 1.234_567).max(0.0)));
-    let mut contact = scene.contact(32, 1e-6);
-    let mut follow = contact.follow(&corner, Stepping::adaptive(1e-3), 1.8);
-    let mut nearest = f64::INFINITY;
-    while let Some(report) = follow.next_step().unwrap() {
-        nearest = nearest.min((report.time - 1.234_567_f64).abs());
-    }
-    assert!(nearest < 0.02, "{nearest}");
-}
-
 /// A run that rejects steps goes on exactly as one that never tried them.
 #[test]
 fn rejected_steps_leave_no_trace() {

@@ -3,7 +3,6 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use viscocontact::analytic::{GrowingSphere, Hertz};
 use viscocontact::contact::Edge;
 use viscocontact::geometry::Sum;
 use viscocontact::prelude::*;
@@ -595,29 +594,6 @@ fn histories_of_the_stress_follow_fields() {
     all[0].print("with fields", 0);
     all[1].print("without", 0);
     assert!(all[0].greatest() < 2.0 && all[1].greatest() > 2.0);
-}
-
-/// A run on states: the pressure in the sphere against the closed form of a growing contact.
-#[test]
-fn fields_of_runs_on_states_are_exact() {
-    let mut contact = StatesContact::new(&ElasticStates::sphere(RADIUS).unwrap(), &maxwell()).unwrap();
-    let load = StepLoad::new(Load::force(0.5)).unwrap();
-    let run = contact.follow(&load, Stepping::adaptive(1e-2), 3.0);
-    let mut run = run.sample_at([2.0]).unwrap().fields_to(1e-3).unwrap();
-    let mut compared = 0;
-    while run.next_step().unwrap().is_some() {
-        for sample in run.samples().map(Result::unwrap).filter(|sample| sample.is_asked_for()) {
-            let (contact, exact) = (sample.contact(), GrowingSphere::step(RADIUS, &maxwell(), 0.5).unwrap());
-            let edge = (contact.contact_area() / std::f64::consts::PI).sqrt();
-            for part in [0.0, 0.3, 0.6, 0.9, 0.98] {
-                let at = |level: f64| Hertz::new(RADIUS, 1.0, level).map_or(0.0, |hertz| hertz.pressure(part * edge));
-                let (found, exact) = (contact.superposed(at), exact.pressure(part * edge, 2.0));
-                assert!((found / exact - 1.0).abs() < 5e-3, "{part}: {found} {exact}");
-                compared += 1;
-            }
-        }
-    }
-    assert_eq!(compared, 5);
 }
 
 /// Convolutions of a field at the end over the convolutions of a run for the motions alone, on 64² cells.

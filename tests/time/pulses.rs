@@ -3,55 +3,15 @@
 
 use std::sync::Arc;
 
-use viscocontact::contact::StepReport;
 use viscocontact::prelude::*;
 
+use super::own_contact::Own;
 use crate::common::{Draws, from_environment};
-
-/// An elastic ball, without anything else.
-#[derive(Debug, Clone)]
-struct Ball {
-    time: f64,
-    force: f64,
-    approach: f64,
-}
 
 const UNTIL: f64 = 1.0;
 const REST: f64 = 0.02;
 const RADIUS: f64 = 10.0e-3;
 const MODULUS: f64 = 1.0e6;
-
-impl Contact for Ball {
-    fn step_to(&mut self, time: f64, load: Load) -> viscocontact::Result<StepReport> {
-        let stiffness = 16.0 / 3.0 * MODULUS * RADIUS.sqrt();
-        let dt = time - self.time;
-        self.time = time;
-        match load {
-            Load::Force { normal, .. } => (self.force, self.approach) = (normal, (normal / stiffness).powf(2.0 / 3.0)),
-            Load::Approach { approach, .. } => {
-                (self.force, self.approach) = (stiffness * approach.max(0.0).powf(1.5), approach);
-            }
-            _ => unreachable!("no springs"),
-        }
-        Ok(self.report(dt, load))
-    }
-
-    fn time(&self) -> f64 {
-        self.time
-    }
-
-    fn force(&self) -> f64 {
-        self.force
-    }
-
-    fn approach(&self) -> f64 {
-        self.approach
-    }
-
-    fn contact_area(&self) -> f64 {
-        std::f64::consts::PI * RADIUS * self.approach.max(0.0)
-    }
-}
 
 /// Times at which the load of a run is found to pass half of its pulses, upwards.
 fn seen<C: Contact>(
@@ -88,7 +48,7 @@ fn a_pulse_that_one_sees_all_see() {
             .material(rubber.clone())
             .build()
             .unwrap();
-        let ball = Ball { time: 0.0, force: 0.0, approach: 0.0 };
+        let ball = Own::new([1.0e4, 0.0], 1.0, 1.0);
         let (adaptive, half) = (Stepping::adaptive(1e-2), 0.5 * size);
         fn load_of<C: Contact>(by_force: bool) -> fn(&C) -> f64 {
             if by_force { |contact| contact.force() } else { |contact| contact.approach() }

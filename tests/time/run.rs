@@ -565,46 +565,9 @@ fn errors_of_gaps_and_creep_come_out_as_themselves() {
 /// Paths and laws of attraction that fail after a while, on bodies of both kinds of solver for attraction.
 #[test]
 fn errors_of_paths_and_attraction_come_out_as_themselves() {
+    // once, when it has been asked so many times
     #[derive(Debug)]
-    struct Drifting(ExponentialAttraction, Arc<AtomicBool>);
-    impl Attraction for Drifting {
-        fn traction(&self, gap: f64) -> f64 {
-            if self.1.load(Ordering::Relaxed) { f64::NAN } else { self.0.traction(gap) }
-        }
-        fn energy(&self, gap: f64) -> f64 {
-            self.0.energy(gap)
-        }
-        fn failure(&self) -> Option<UserError> {
-            self.1.load(Ordering::Relaxed).then(|| UserError::new("the law", "x".parse::<f64>().unwrap_err()))
-        }
-    }
-    let (grid, ball) = (Grid::square(32, 4.0e-3).unwrap(), Sphere::new(10.0e-3).unwrap());
-    let material = || Material::incompressible(Zener::with_time(1.0e6, 1.0e6, 1.0).unwrap());
-    let own = |error: Error| {
-        assert!(matches!(error, Error::User(_)), "{error}");
-        assert!(error.source().unwrap().is::<std::num::ParseFloatError>());
-    };
-    for periodic in [false, true] {
-        let fails = Arc::new(AtomicBool::new(true));
-        let law = || Drifting(ExponentialAttraction::new(1.0, 1.0e-5).unwrap(), Arc::clone(&fails));
-        let builder = || {
-            let builder = builder_of(&ball, grid.clone(), material());
-            let builder = if periodic { builder.kernel(InfluenceKernel::periodic(&grid).unwrap()) } else { builder };
-            builder.attraction(law())
-        };
-        own(builder().build().unwrap_err());
-        fails.store(false, Ordering::Relaxed);
-        let mut contact = builder().build().unwrap();
-        contact.step(0.1, Load::approach(1.0e-5)).unwrap();
-        let before = (contact.time(), contact.force().to_bits());
-        fails.store(true, Ordering::Relaxed);
-        own(contact.step(0.1, Load::approach(1.1e-5)).unwrap_err());
-        assert_eq!((contact.time(), contact.force().to_bits()), before);
-    }
-    let path = FnPath::fallible(|t| if t < 0.15 { Ok([1.0e-3 * t, 0.0]) } else { "x".parse().map(|x1| [x1, 0.0]) });
-    // once, anywhere in a step that snaps: its jump is looked for in parts
-    #[derive(Debug)]
-    struct Once(ExponentialAttraction, Arc<AtomicUsize>, Arc<AtomicBool>);
+    struct Once(ExponentialAttraction, Arc<AtomicUsize>, AtomicBool);
     impl Attraction for Once {
         fn traction(&self, gap: f64) -> f64 {
             let fails = self.1.fetch_sub(1, Ordering::Relaxed) == 0;
@@ -620,10 +583,35 @@ fn errors_of_paths_and_attraction_come_out_as_themselves() {
         }
     }
     let (left, never) = (Arc::new(AtomicUsize::new(usize::MAX)), usize::MAX);
-    let law = Once(ExponentialAttraction::new(1.0, 2.0e-6).unwrap(), Arc::clone(&left), Arc::default());
+    let law =
+        |range: f64| Once(ExponentialAttraction::new(1.0, range).unwrap(), Arc::clone(&left), AtomicBool::default());
+    let (grid, ball) = (Grid::square(32, 4.0e-3).unwrap(), Sphere::new(10.0e-3).unwrap());
+    let material = || Material::incompressible(Zener::with_time(1.0e6, 1.0e6, 1.0).unwrap());
+    let own = |error: Error| {
+        assert!(matches!(error, Error::User(_)), "{error}");
+        assert!(error.source().unwrap().is::<std::num::ParseFloatError>());
+    };
+    for periodic in [false, true] {
+        let builder = || {
+            let builder = builder_of(&ball, grid.clone(), material());
+            let builder = if periodic { builder.kernel(InfluenceKernel::periodic(&grid).unwrap()) } else { builder };
+            builder.attraction(law(1.0e-5))
+        };
+        left.store(0, Ordering::Relaxed);
+        own(builder().build().unwrap_err());
+        left.store(never, Ordering::Relaxed);
+        let mut contact = builder().build().unwrap();
+        contact.step(0.1, Load::approach(1.0e-5)).unwrap();
+        let before = (contact.time(), contact.force().to_bits());
+        left.store(0, Ordering::Relaxed);
+        own(contact.step(0.1, Load::approach(1.1e-5)).unwrap_err());
+        assert_eq!((contact.time(), contact.force().to_bits()), before);
+    }
+    let path = FnPath::fallible(|t| if t < 0.15 { Ok([1.0e-3 * t, 0.0]) } else { "x".parse().map(|x1| [x1, 0.0]) });
+    // anywhere in a step that snaps: its jump is looked for in parts
     let (small, fine) = (Sphere::new(1.0e-3).unwrap(), Grid::square(128, 1.0e-3).unwrap());
     let exact = Settings::default().with_tolerance(1e-9);
-    let mut contact = builder_of(&small, fine, material()).settings(exact).attraction(law).build().unwrap();
+    let mut contact = builder_of(&small, fine, material()).settings(exact).attraction(law(2.0e-6)).build().unwrap();
     // so that the first guess of a step is extrapolated from two
     contact.step(0.1, Load::approach(-1.5e-5)).unwrap();
     contact.step(0.1, Load::approach(-1.4e-5)).unwrap();

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use crate::common::refused::{not_covered, refused};
 use crate::common::{Draws, builder_of, from_environment};
 use approx::assert_relative_eq;
 use viscocontact::contact::{Edge, TimeRule};
@@ -56,50 +55,6 @@ fn levels_under_a_force_do_not_depend_on_the_shape() {
     assert_relative_eq!(contact.level() / unit, 0.7605870, max_relative = 1e-6);
     for (time, level) in [(1.25, 0.8522827), (2.0, 1.0542604), (5.0, 1.3876905), (20.0, 1.5953345)] {
         assert_relative_eq!(held(&mut contact, time, 0.4), level, max_relative = 1e-6);
-    }
-}
-
-/// E = ¼ + ¾ e^(−t).
-fn quarter_body() -> Material {
-    body(0.25, &[(0.75, 1.0)])
-}
-
-/// F_el = δ^(3/2): a paraboloid, round or elliptic, in units of its own.
-fn paraboloid() -> Arc<ElasticStates> {
-    let state = |depth: f64| (depth.powf(1.5), depth, 1.5 * depth.sqrt(), depth);
-    ElasticStates::from_table(&[state(1e-4), state(4.0)]).unwrap()
-}
-
-/// The forces at these times of a history that rises for one unit of time, is held for one, and recedes.
-fn forces(states: &Arc<ElasticStates>, load: impl Fn(f64) -> Load, times: &[f64]) -> Vec<f64> {
-    let table = [(0.0, 0.0), (1.0, 1.0), (2.0, 1.0), (4.0, -1.0)].map(|(time, part)| (time, load(part)));
-    let history = PiecewiseLinear::new(&table).unwrap();
-    let mut contact = StatesContact::new(states, &quarter_body()).unwrap();
-    let mut run = contact.follow(&history, Stepping::adaptive(1e-7), times[times.len() - 1]);
-    let mut found = Vec::new();
-    while let Some(report) = run.next_step().unwrap() {
-        while times.get(found.len()).is_some_and(|time| *time <= report.time) {
-            found.push(run.within_step(times[found.len()]).unwrap().force());
-        }
-    }
-    assert_eq!(found.len(), times.len());
-    found
-}
-
-/// Values of the integral equation of a paraboloid: driven by its approach, and through a spring of stiffness 1.
-#[test]
-fn retracted_and_sprung_paraboloids_match_the_tables() {
-    let states = paraboloid();
-    let times = [0.5, 1.0, 2.0, 2.1, 2.2, 2.4, 2.5];
-    let expected = [0.307325743, 0.769660555, 0.441172434, 0.285883046, 0.159045973, 0.00487431016, 0.0];
-    for (time, (found, expected)) in times.iter().zip(forces(&states, Load::approach, &times).iter().zip(expected)) {
-        assert!((found - expected).abs() < 1e-6, "{time}: {found} {expected}");
-    }
-    let times = [0.5, 1.0, 1.5, 2.0, 2.2, 2.4];
-    let expected = [0.166160, 0.374890, 0.325633, 0.289532, 0.171695, 0.069760];
-    let sprung = forces(&states, |drive| Load::spring(1.0, drive), &times);
-    for (time, (found, expected)) in times.iter().zip(sprung.iter().zip(expected)) {
-        assert!((found - expected).abs() < 1e-6, "{time}: {found} {expected}");
     }
 }
 
@@ -280,20 +235,6 @@ fn random_contacts_are_superpositions_of_their_elastic_states() {
          force and approach over what is allowed {worst:.1?}"
     );
     assert!(compared > 4 * refused && apart > 0, "{compared} {refused} {apart}");
-}
-
-/// What the states do not cover is refused by name, and changes nothing.
-#[test]
-fn other_load_points_and_levels_beyond_the_sweep_are_refused() {
-    let states = ball_states();
-    let mut contact = StatesContact::new(&states, &body(1.0, &[(1.0, 1.0)])).unwrap();
-    contact.step(1.0, Load::force(1.0e-7)).unwrap();
-    let before = format!("{contact:?}");
-    let tilted = contact.step(1.0, Load::eccentric_force(1.0e-7, [1.0e-4, 0.0]));
-    not_covered([(tilted.err(), "the states were swept for")]);
-    let beyond = [Load::force(1.0e-6), Load::approach(1.0)].map(|load| contact.step(1.0, load).err());
-    refused(beyond.map(|error| (error, "sweep further")));
-    assert_eq!(format!("{contact:?}"), before);
 }
 
 /// The tractions of the groups carry the force in every step of 200 random histories of forces: the topmost group is among them where

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::common::Temporary;
+use crate::friction::kept;
 use viscocontact::ErrorKind;
 use viscocontact::contact::CheckpointError;
 use viscocontact::prelude::*;
@@ -34,40 +35,54 @@ fn advanced(contact: &mut StatesContact, steps: std::ops::Range<u32>) {
     }
 }
 
-/// A contact restored or resumed goes on by the same bits.
+/// A contact restored or resumed goes on by the same bits, sheared or not.
 #[test]
 fn contacts_on_states_come_back_to_the_last_bit() {
-    let states = rough_states(false);
-    let mut contact = StatesContact::new(&states, &material()).unwrap();
-    advanced(&mut contact, 0..8);
-    let mut start = contact.snapshot();
-    advanced(&mut contact, 8..20);
-    let end = format!("{contact:?}");
-    contact.restore(&start).unwrap();
-    advanced(&mut contact, 8..20);
-    assert_eq!(format!("{contact:?}"), end);
-    contact.snapshot_into(&mut start);
-    assert_eq!(format!("{start:?}"), end);
-    let mut other = StatesContact::new(&states, &material()).unwrap();
-    assert!(matches!(other.restore(&start), Err(Error::OtherContact { what: "the snapshot", .. })));
+    type Kind<'a> = (&'a dyn Fn() -> StatesContact, fn(&mut StatesContact, std::ops::Range<u32>));
+    let (states, folder) = (rough_states(false), Temporary::folder("states-checkpoint"));
+    let path = folder.join("state");
+    let plain = || StatesContact::new(&states, &material()).unwrap();
+    let kinds: [Kind<'_>; 2] = [(&plain, advanced), (&|| kept::contact(0.4), kept::advance)];
+    for (new, advanced) in kinds {
+        let seen = |contact: &StatesContact| (format!("{contact:?}"), format!("{:?}", contact.lateral_work()));
+        let mut contact = new();
+        advanced(&mut contact, 0..8);
+        let mut start = contact.snapshot();
+        contact.save(&path).unwrap();
+        advanced(&mut contact, 8..20);
+        let end = seen(&contact);
+        contact.restore(&start).unwrap();
+        advanced(&mut contact, 8..20);
+        assert_eq!(seen(&contact), end);
+        contact.snapshot_into(&mut start);
+        assert_eq!(format!("{start:?}"), end.0);
+        let mut other = new();
+        assert!(matches!(other.restore(&start), Err(Error::OtherContact { what: "the snapshot", .. })));
+        other.resume(&path).unwrap();
+        advanced(&mut other, 8..20);
+        assert_eq!(seen(&other), end);
+    }
+    // of another coefficient, or of none
+    for mut wrong in [kept::contact(0.5), kept::smooth().with_linear_steps()] {
+        match wrong.resume(&path) {
+            Err(Error::Checkpoint { cause: CheckpointError::OtherScene { what, .. }, .. }) => {
+                assert_eq!(what, "friction")
+            }
+            resumed => panic!("{resumed:?}"),
+        }
+    }
     // a contact within a step is one of its clones
-    let (history, mut apart) = (Ramp::new(Load::force(0.0), Load::force(1.0e-3), 1.0).unwrap(), other.clone());
+    let history = Ramp::new(Load::force(0.0), Load::force(1.0e-3), 1.0).unwrap();
+    let (mut other, mut apart) = (plain(), plain());
+    apart.clone_from(&other);
     let mut run = apart.follow(&history, Stepping::adaptive(1e-2), 1.0);
     let time = run.next_step().unwrap().unwrap().time;
     let within = run.within_step(0.7 * time).unwrap();
     other.restore(&within).unwrap();
     assert_eq!(other.time(), 0.7 * time);
-
-    let folder = Temporary::folder("states-checkpoint");
-    let path = folder.join("state");
-    other = StatesContact::new(&states, &material()).unwrap();
+    // of another material, other states
     advanced(&mut other, 0..8);
     other.save(&path).unwrap();
-    let mut again = StatesContact::new(&states, &material()).unwrap();
-    again.resume(&path).unwrap();
-    advanced(&mut again, 8..20);
-    assert_eq!(format!("{again:?}"), end);
-    // of another material, other states, a damaged file, a file of a contact
     let stiffer = Material::incompressible(Maxwell::with_time(1.0, 1.0).unwrap());
     let mut wrong = StatesContact::new(&states, &stiffer).unwrap();
     assert!(matches!(wrong.resume(&path), Err(Error::Checkpoint { .. })));
@@ -148,7 +163,9 @@ fn states_in_files_are_the_states() {
         let [mut one, mut other] = [&states, &read].map(|states| StatesContact::new(states, &material()).unwrap());
         for step in 0..12 {
             let (dt, load) = load(step);
-            assert_eq!(one.step(dt, load).unwrap(), other.step(dt, load).unwrap());
+            let report = one.step(dt, load).unwrap();
+            assert!((report.contact_cells > 0) == (report.force > 0.0));
+            assert_eq!(report, other.step(dt, load).unwrap());
         }
         let no_pressures = |error: Error| matches!(error, Error::States(StatesError::NoPressures));
         match kept {
@@ -166,52 +183,45 @@ fn states_in_files_are_the_states() {
     assert_eq!(read_states(folder.join("absent.npz")).unwrap_err().kind(), ErrorKind::File);
 }
 
-/// Tables that are no elastic states are refused.
-#[test]
-fn tables_that_are_no_states_are_refused() {
-    let good = [(1.0, 1.0, 1.0, 1.0), (2.0, 1.5, 2.0, 2.0)];
-    assert!(ElasticStates::from_table(&good).is_ok());
-    assert!(matches!(ElasticStates::from_table(&good[..1]), Err(Error::WrongLength { .. })));
-    for (row, column) in (0..2).flat_map(|row| (0..4).map(move |column| (row, column))) {
-        for bad in [0.0, -1.0, f64::NAN] {
-            let mut table = good.map(|(a, b, c, d)| [a, b, c, d]);
-            table[row][column] = bad;
-            let table = table.map(|[a, b, c, d]| (a, b, c, d));
-            assert_eq!(ElasticStates::from_table(&table).unwrap_err().kind(), ErrorKind::Value, "{table:?}");
-        }
-    }
-    let falls = [(1.0, 1.0, 1.0, 1.0), (2.0, 0.5, 2.0, 2.0)];
-    assert!(matches!(ElasticStates::from_table(&falls), Err(Error::OutOfOrder { .. })));
-}
-
-/// Tables and charts take contacts on elastic states; what these do not have is empty.
+/// Tables and charts take contacts on elastic states, with what acts along the surface; what these do not have is empty.
 #[test]
 fn histories_of_states_are_written_and_drawn() {
     use viscocontact::plot::{History, HistoryColumn};
 
     let folder = Temporary::folder("states-history");
-    let path = folder.join("history.csv");
-    let mut contact = StatesContact::new(&rough_states(false), &material()).unwrap();
+    let (path, mut contact, mut history) = (folder.join("history.csv"), kept::contact(0.4), History::new());
     let mut table =
-        CsvHistory::create(&path, &Metadata::new("rough"), &contact, &["level [m2]"], Earlier::Refuse).unwrap();
-    let mut history = History::new();
-    for step in 0..6 {
-        let (dt, load) = load(step);
-        let report = contact.step(dt, load).unwrap();
-        assert!((report.contact_cells > 0) == (report.force > 0.0) && report.dt == dt);
+        CsvHistory::create(&path, &Metadata::new("rubbed"), &contact, &["level [m2]"], Earlier::Refuse).unwrap();
+    for _ in 0..3 {
+        let report = contact.step_sheared(0.1, Load::force(1.0), Load::force(0.3)).unwrap();
+        assert_eq!(report.dt, 0.1);
         table.record(&contact, &report, &[contact.level()]).unwrap();
         history.record(&contact);
     }
-    let text = std::fs::read_to_string(&path).unwrap();
-    let (names, row) = (text.lines().nth(1).unwrap(), text.lines().last().unwrap());
-    let value = |name: &str| {
-        let column = names.split(',').position(|other| other == name).unwrap();
-        row.split(',').nth(column).unwrap().to_owned()
-    };
-    assert_eq!(value("force [N]").parse::<f64>().unwrap(), contact.force());
-    assert_eq!(value("contact area [m2]").parse::<f64>().unwrap(), contact.contact_area());
-    assert_eq!(value("level [m2]").parse::<f64>().unwrap(), contact.level());
-    assert_eq!(value("max pressure [Pa]"), "");
+    let smooth = kept::smooth();
+    let report = smooth.report(0.0, Load::force(0.0));
+    assert_eq!(table.record(&smooth, &report, &[0.0]).unwrap_err().kind(), ErrorKind::File);
+    let text = std::fs::read_to_string(path).unwrap();
+    let rows: Vec<Vec<&str>> = text.lines().skip(1).map(|line| line.split(',').collect()).collect();
+    assert_eq!(rows.len(), 4);
+    let field = |row: usize, name: &str| rows[row][rows[0].iter().position(|heading| *heading == name).unwrap()];
+    let value = |row: usize, name: &str| field(row, name).parse::<f64>().unwrap();
+    let work = contact.lateral_work();
+    for (name, expected) in [
+        ("force [N]", contact.force()),
+        ("contact area [m2]", contact.contact_area()),
+        ("level [m2]", contact.level()),
+        ("force along [N]", contact.lateral_force()),
+        ("displacement along [m]", contact.lateral_displacement()),
+        ("slid [m]", 0.0),
+        ("stick area [m2]", contact.stick_area()),
+        ("work along [J]", work.work),
+        ("loss by slip [J]", work.slip),
+    ] {
+        assert_eq!(value(3, name), expected, "{name}");
+    }
+    assert!(value(1, "displacement along [m]") < value(3, "displacement along [m]"));
+    assert_eq!(field(3, "max pressure [Pa]"), "");
     assert_eq!(history.column(HistoryColumn::ContactArea).last(), Some(&contact.contact_area()));
     history.chart(HistoryColumn::ContactArea).unwrap();
     assert!(matches!(history.chart(HistoryColumn::MaxPressure), Err(Error::WrongLength { .. })));

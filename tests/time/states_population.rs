@@ -1,7 +1,6 @@
 //! Adaptive runs on elastic states, drawn at random: is the error what the tolerance asks for, at the ends of steps and inside? The
 //! references are steps of given length on graded meshes, which no control chooses. `STATES=400` for the whole population.
 
-use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use crate::common::random_bodies::{Body, body_of_twenty_decades, random_body};
@@ -277,67 +276,9 @@ fn adaptive_runs_on_states_err_by_what_was_asked() {
     assert!(both.above(2.0) <= both.count() / 100 && both.above(3.0) == 0, "beyond what was asked: {both:?}");
 }
 
-/// A force that jumps and stays: the approach of a ball grows as the creep compliance to the power 2/3. The
-/// fresh response of these bodies is up to 3000 times the relaxed one: levels that the edge meets relax within a step.
-#[test]
-fn held_forces_follow_the_creep_compliance() {
-    let states = ElasticStates::sphere(1.0).unwrap();
-    for creep in [3.0, 100.0, 3000.0] {
-        let terms = [(0.3e-6 * creep, 0.01), (0.7e-6 * creep, 1.0)];
-        let body = Material::incompressible(GeneralizedKelvin::new(1.0e-6, 0.0, &terms).unwrap());
-        let force = states.level_at(0.3) / body.contact_compliance(10.0);
-        let load = StepLoad::new(Load::force(force)).unwrap();
-        for tolerance in TOLERANCES {
-            let mut contact = StatesContact::new(&states, &body).unwrap();
-            let mut run = contact.follow(&load, Stepping::adaptive(tolerance), 10.0);
-            let (mut worst, mut steps) = (0.0f64, 0);
-            while let Some(report) = run.next_step().unwrap() {
-                let level = force * body.contact_compliance(report.time);
-                let right = report.approach * (level / states.level_at(report.approach)).powf(2.0 / 3.0);
-                worst = worst.max((report.approach - right).abs() / 0.3 / tolerance);
-                steps += 1;
-            }
-            println!("creep {creep}, {tolerance:.0e}: {worst:.2} in {steps} steps");
-            assert!(worst < 2.0 && steps < 600, "creep {creep}, {tolerance:e}: {worst} tolerances in {steps} steps");
-        }
-    }
-}
-
 /// A contact modulus E(t) of an incompressible body, G = E/4.
 fn relaxing(equilibrium: f64, modulus: f64) -> Material {
     Material::incompressible(GeneralizedMaxwell::new(0.25 * equilibrium, &[(0.25 * modulus, 1.0)]).unwrap())
-}
-
-/// Nine taps, most of them shorter than the step that the body apart would allow: none is stepped over, and none is too weak.
-#[test]
-fn taps_are_not_stepped_over() {
-    let states = ElasticStates::sphere(1.0).unwrap();
-    let body = relaxing(1.0 / 10.5, 1.0);
-    let rate = 1.5;
-    let load = FnHistory::new(move |t: f64| Load::approach(0.18 * (rate * t).sin()));
-    let mut fine = StatesContact::new(&states, &body).unwrap();
-    let mut peaks = [[0.0f64; 9]; 2];
-    let tap = |time: f64| (rate * time / TAU) as usize;
-    for _ in 0..20_000 {
-        let next = fine.time() + 37.0 / 20_000.0;
-        fine.step(next - fine.time(), load.at(next)).unwrap();
-        peaks[0][tap(next).min(8)] = peaks[0][tap(next).min(8)].max(fine.force());
-    }
-    for tolerance in [1e-3, 1e-4, 1e-5] {
-        let mut contact = StatesContact::new(&states, &body).unwrap();
-        let mut run = contact.follow(&load, Stepping::adaptive(tolerance), 37.0);
-        peaks[1] = [0.0; 9];
-        while let Some(report) = run.next_step().unwrap() {
-            for k in 1..=8 {
-                let time = report.time - report.dt * (1.0 - f64::from(k) / 8.0);
-                let force = run.within_step(time).unwrap().force();
-                peaks[1][tap(time).min(8)] = peaks[1][tap(time).min(8)].max(force);
-            }
-        }
-        for (found, right) in peaks[1].iter().zip(peaks[0]) {
-            assert!((found / right - 1.0).abs() < 0.02 + 10.0 * tolerance, "{tolerance:e}: {found} instead of {right}");
-        }
-    }
 }
 
 /// A breakpoint that is the end of the run but for the rounding of times.

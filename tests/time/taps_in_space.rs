@@ -6,7 +6,7 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use crate::common::{Draws, RADIUS, Ratios, from_environment, sphere_on};
+use crate::common::{Draws, RADIUS, Ratios, from_environment};
 use viscocontact::contact::TimeRule;
 use viscocontact::prelude::*;
 
@@ -240,18 +240,6 @@ impl Taps {
         let mut work = [0.0; 3];
         while let Some(report) = run.next_step().unwrap_or_else(|error| panic!("{}: {error}", self.name)) {
             work[1] += report.convolution_equivalents();
-            if std::env::var_os("TAPS_TRACE").is_some() {
-                println!(
-                    "  step to {:.6} of {:.2e}: force {:.3e} approach {:.4e}, cells {}, error {:?}, part {:.3}",
-                    report.time / self.until,
-                    report.dt / self.until,
-                    report.force,
-                    report.approach / self.depth,
-                    report.contact_cells,
-                    report.time_error,
-                    (self.part)(report.time)
-                );
-            }
             work[0] += 1.0;
             for sample in run.samples() {
                 let sample = sample.unwrap();
@@ -276,9 +264,7 @@ fn taps_are_honest() {
         let (found, work) = taps.run();
         (0..3).for_each(|k| total[k] += work[k]);
         let error = taps.error(&found, most as usize / SAMPLES);
-        if from_environment("TAPS_LINES", 0) > 0 {
-            println!("{}: {error:.2?} at {work:.0?}", taps.name);
-        }
+        println!("{}: {error:.2?} at {work:.0?}", taps.name);
         match error {
             Some((error, time)) => ratios.push(error, &format!("at {time:.4}: {}", taps.name)),
             None => unknown += 1,
@@ -289,58 +275,4 @@ fn taps_are_honest() {
     println!("{unknown} without a truth; {steps} steps, {rejected} rejected, {equivalents:.0} equivalents");
     assert!(ratios.quantile(0.99) <= 2.0 && ratios.greatest() <= 4.0);
     assert!(5 * unknown <= scenes, "{unknown} of {scenes} without a truth");
-}
-
-/// A Maxwell body as elements that know nothing of each other, to the depths x²/R of which a ball touches them, each marched by itself: the
-/// force of an axisymmetric contact by the method of dimensionality reduction.
-struct Foundation {
-    width: f64,
-    /// Displacement and stress of each element.
-    elements: Vec<[f64; 2]>,
-}
-
-impl Foundation {
-    /// The force after a step to a depth in which displacements are linear.
-    fn step(&mut self, [modulus, tau]: [f64; 2], dt: f64, depth: f64) -> f64 {
-        let (decay, mean) = ((-dt / tau).exp(), -modulus * tau / dt * (-dt / tau).exp_m1());
-        let mut force = 0.0;
-        for (k, [moved, stress]) in self.elements.iter_mut().enumerate() {
-            let gap = ((k as f64 + 0.5) * self.width).powi(2) / RADIUS;
-            let free = *moved - decay * *stress / mean;
-            let next = free.max(depth - gap);
-            (*stress, *moved) = (decay * *stress + mean * (next - *moved), next);
-            force += 2.0 * self.width * stress.max(0.0);
-        }
-        force
-    }
-}
-
-/// Taps into the imprint of those before, on a body of short memory: on fine cells the forces are those of a foundation.
-#[test]
-fn taps_into_imprints_are_those_of_a_foundation() {
-    let (g, tau, depth, until) = (0.25e6, 0.1, 10.0e-6, 6.0);
-    let part = |t: f64| 0.2 + 0.1 * t - (TAU * t).cos();
-    let radius = (1.8 * depth * RADIUS).sqrt();
-    let mut foundation = Foundation { width: 1.05 * radius / 400.0, elements: vec![[0.0; 2]; 400] };
-    let grid = Grid::square(48, 2.4 * radius).unwrap();
-    let material = Material::incompressible(Maxwell::with_time(g, tau).unwrap());
-    let mut contact = sphere_on(grid, material, Settings::default());
-    let load = FnHistory::new(move |t| Load::approach(depth * part(t)));
-    let mut run = contact.follow(&load, Stepping::adaptive(1e-3), until).sample_at(Times::every(0.02)).unwrap();
-    let (mut now, mut forces) = (0.0, vec![[0.0; 2]]);
-    while run.next_step().unwrap().is_some() {
-        for sample in run.samples().map(Result::unwrap).filter(|sample| sample.is_asked_for()) {
-            let time = sample.report().time;
-            let steps = (1..=200).map(|k| now + (time - now) * f64::from(k) / 200.0);
-            let dt = (time - now) / 200.0;
-            let force = steps.fold(0.0, |_, next| foundation.step([4.0 * g, tau], dt, depth * part(next)));
-            forces.push([force, sample.report().force]);
-            now = time;
-        }
-    }
-    let most = forces.iter().fold(0.0, |most: f64, force| most.max(force[0]));
-    let taps = forces.windows(2).filter(|pair| pair[0][1] == 0.0 && pair[1][0] > 1e-2 * most).count();
-    let off = forces.iter().fold(0.0, |off: f64, force| off.max((force[0] - force[1]).abs())) / most;
-    println!("{taps} taps, forces differ by {off:.1e} of the greatest");
-    assert!(taps == 6 && off < 0.02, "{taps} {off}");
 }

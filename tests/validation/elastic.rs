@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use viscocontact::analytic::HertzEllipse;
+use viscocontact::analytic::{Hertz, HertzEllipse};
 use viscocontact::prelude::*;
 
 const MODULUS: f64 = 2.0e6;
@@ -29,29 +29,12 @@ fn elastic_contacts_of_closed_shapes_are_their_closed_forms() {
     let ellipse = HertzEllipse::new([radius, 2.0 * radius], MODULUS, force).unwrap();
     let [a1, a2] = ellipse.semi_axes;
     type Scene = (&'static str, Box<dyn Geometry>, f64, [f64; 2], [f64; 2]);
+    #[rustfmt::skip]
     let scenes: [Scene; 4] = [
         ("sphere", Box::new(Sphere::new(radius).unwrap()), 2.6 * a, [a * a / radius, PI * a * a], [2e-5, 1e-4]),
-        (
-            "cone",
-            Box::new(Cone::new(slope).unwrap()),
-            2.6 * cone,
-            [0.5 * PI * cone * slope, PI * cone * cone],
-            [4e-3, 4e-3],
-        ),
-        (
-            "punch",
-            Box::new(FlatPunch::circular(punch).unwrap()),
-            2.6 * punch,
-            [0.5 * force / (MODULUS * punch), PI * punch * punch],
-            [2e-3, 2e-4],
-        ),
-        (
-            "ellipsoid",
-            Box::new(Ellipsoid::new(radius, 2.0 * radius).unwrap()),
-            2.6 * a1.max(a2),
-            [ellipse.approach, PI * a1 * a2],
-            [3e-5, 1e-4],
-        ),
+        ("cone", Box::new(Cone::new(slope).unwrap()), 2.6 * cone, [0.5 * PI * cone * slope, PI * cone * cone], [2e-3, 2e-3]),
+        ("punch", Box::new(FlatPunch::circular(punch).unwrap()), 2.6 * punch, [0.5 * force / (MODULUS * punch), PI * punch * punch], [2e-3, 2e-4]),
+        ("ellipsoid", Box::new(Ellipsoid::new(radius, 2.0 * radius).unwrap()), 2.6 * a1.max(a2), [ellipse.approach, PI * a1 * a2], [3e-5, 1e-4]),
     ];
     for (name, shape, side, exact, allowed) in scenes {
         let [coarse, fine] = [64, 256].map(|cells| {
@@ -72,4 +55,16 @@ fn elastic_contacts_of_closed_shapes_are_their_closed_forms() {
     assert!((0.5 * width / half - 1.0).abs() < 1e-3, "{width:e} {half:e}");
     let peak = 2.0 * 200.0 / (PI * half);
     assert!((contact.fields().max_pressure() / peak - 1.0).abs() < 1e-3, "{peak:e}");
+}
+
+/// A sphere on a grid 2.6 contact radii wide.
+#[test]
+fn approach_converges_with_the_mesh_at_second_order_on_average() {
+    let sphere = Sphere::new(10.0e-3).unwrap();
+    let exact = Hertz::new(10.0e-3, MODULUS, 1.0).unwrap();
+    let error = |cells: usize| pressed(&sphere, 1.0, 2.6 * exact.contact_radius, cells)[0] / exact.approach - 1.0;
+    let errors = [16, 32, 64, 128, 256].map(|cells| error(cells).abs());
+    println!("{errors:?}");
+    let order = (errors[0] / errors[4]).log2() / 4.0;
+    assert!(order > 1.7, "order {order}: {errors:?}");
 }

@@ -116,22 +116,17 @@ fn checkpoints_that_ranks_cannot_resume_are_refused_by_name() {
     for size in [None, Some(1), Some(3)] {
         assert_eq!(what(refused(size, &path)), "geometry");
     }
-    // a window of the grid
-    let windowed = || Ok(sphere()?.settings(Settings::default()));
-    let mut contact = windowed().unwrap().build().unwrap();
-    contact.step(0.0, Load::force(0.1)).unwrap();
-    contact.save(&path).unwrap();
-    for error in on(Some(2), windowed, |mut contact| Ok(contact.resume(&path).unwrap_err())) {
-        assert!(what(error.unwrap()).starts_with("computed region"));
-    }
-    // a symmetry that a load has broken
-    let symmetric = || Ok(sphere()?.settings(Settings::default().with_window(false)));
-    let mut contact = symmetric().unwrap().build().unwrap();
+    // a window of the grid, and a symmetry that a load has broken
     let tilted = Load::Approach { approach: 1.0e-5, tilt: [Tilt::Fixed(1.0e-3), Tilt::Fixed(0.0)] };
-    contact.step(0.0, tilted).unwrap();
-    contact.save(&path).unwrap();
-    for error in on(Some(2), symmetric, |mut contact| Ok(contact.resume(&path).unwrap_err())) {
-        assert!(what(error.unwrap()).starts_with("computed region"));
+    let windowed: fn() -> Result<Builder, Error> = || Ok(sphere()?.settings(Settings::default()));
+    let symmetric: fn() -> Result<Builder, Error> = || Ok(sphere()?.settings(Settings::default().with_window(false)));
+    for (builder, load) in [(windowed, Load::force(0.1)), (symmetric, tilted)] {
+        let mut contact = builder().unwrap().build().unwrap();
+        contact.step(0.0, load).unwrap();
+        contact.save(&path).unwrap();
+        for error in on(Some(2), builder, |mut contact| Ok(contact.resume(&path).unwrap_err())) {
+            assert!(what(error.unwrap()).starts_with("computed region"));
+        }
     }
     // an indenter that has moved
     let mut contact = sphere().unwrap().build().unwrap();

@@ -161,41 +161,31 @@ struct Style {
     encoding: Encoding,
 }
 
-const PLAIN: Style = Style {
-    name: "plain",
-    preamble: "",
-    delimiter: ",",
-    decimal_comma: false,
-    unit: "[]",
-    exponent: "e",
-    end: "\n",
-    quotes: false,
-    encoding: Encoding::Utf8,
-};
-const STYLES: [Style; 6] = [
-    PLAIN,
-    Style {
-        name: "German spreadsheet",
-        preamble: "Prüfbericht\n\nProbe;PMMA;23 °C\n",
-        delimiter: ";",
-        decimal_comma: true,
-        unit: "()",
-        encoding: Encoding::Utf16,
-        end: "\r\n",
-        ..PLAIN
-    },
-    Style {
-        name: "rheometer",
-        preamble: "Filename\tx.tri\nGeometry\t40.0\tmm\nRun\t3\n[step]\nSweep - 1\n",
-        delimiter: "\t",
-        unit: "row",
-        encoding: Encoding::Windows,
-        ..PLAIN
-    },
-    Style { name: "NumPy", preamble: "# made by a script\n", delimiter: " ", unit: "#", exponent: "D", ..PLAIN },
-    Style { name: "quoted", delimiter: ",", decimal_comma: true, quotes: true, end: "\r", ..PLAIN },
-    Style { name: "DIN", delimiter: ";", unit: "/", encoding: Encoding::Windows, ..PLAIN },
+type Row = (&'static str, &'static str, &'static str, bool, &'static str, &'static str, &'static str, bool, Encoding);
+
+#[rustfmt::skip]
+const STYLES: [Row; 6] = [
+    ("plain", "", ",", false, "[]", "e", "\n", false, Encoding::Utf8),
+    ("German spreadsheet", "Prüfbericht\n\nProbe;PMMA;23 °C\n", ";", true, "()", "e", "\r\n", false, Encoding::Utf16),
+    ("rheometer", "Filename\tx.tri\nGeometry\t40.0\tmm\nRun\t3\n[step]\nSweep - 1\n", "\t", false, "row", "e", "\n", false, Encoding::Windows),
+    ("NumPy", "# made by a script\n", " ", false, "#", "D", "\n", false, Encoding::Utf8),
+    ("quoted", "", ",", true, "[]", "e", "\r", true, Encoding::Utf8),
+    ("DIN", "", ";", false, "/", "e", "\n", false, Encoding::Windows),
 ];
+
+fn styles() -> [Style; 6] {
+    STYLES.map(|(name, preamble, delimiter, decimal_comma, unit, exponent, end, quotes, encoding)| Style {
+        name,
+        preamble,
+        delimiter,
+        decimal_comma,
+        unit,
+        exponent,
+        end,
+        quotes,
+        encoding,
+    })
+}
 
 fn table(kind: Kind, name: &str, columns: &[Column], rows: &[Vec<f64>], style: Style) -> Layout {
     let quoted = |text: String| if style.quotes { format!("\"{text}\"") } else { text };
@@ -284,53 +274,29 @@ pub fn corpus() -> Vec<Layout> {
             vec![time, 2.0 * depth.powf(1.5), depth]
         })
         .collect();
+    #[rustfmt::skip]
     let tables: [(Kind, &str, &Vec<Vec<f64>>, &str); 17] = [
         (Kind::Table(Creep), "creep", &creep, "t~s~0; J~1/Pa~1"),
         (Kind::Table(Creep), "creep, reversed", &creep, "Creep compliance~1/GPa~1; Time~min~0; Sample~~A"),
         (Kind::Table(Creep), "creep in tension", &creep, "t~µs~0; D~1/MPa~1"),
         (Kind::Table(Relaxation), "relaxation, pyvisco", &relaxation, "t~s~0; E_relax~MPa~1; T~°C~=23; Set~-~=0"),
         (Kind::Table(Relaxation), "relaxation, German", &relaxation, "Zeit t~h~0; E~GPa~1"),
-        (
-            Kind::Table(Relaxation),
-            "relaxation with segments",
-            &relaxation,
-            "Segment~~Hold; G(t)~kPa~1; Time~ms~0; Temperature~K~=296.15",
-        ),
+        (Kind::Table(Relaxation), "relaxation with segments", &relaxation, "Segment~~Hold; G(t)~kPa~1; Time~ms~0; Temperature~K~=296.15"),
         (Kind::Table(Dynamic), "DMA, pyvisco", &dynamic, "f~Hz~0; E_stor~MPa~1; E_loss~MPa~2"),
-        (
-            Kind::Table(Dynamic),
-            "rheometer sweep",
-            &dynamic,
-            "Angular frequency~rad/s~0; Storage modulus~kPa~1; Loss modulus~Pa~2; Tan(delta)~~tan",
-        ),
-        (
-            Kind::Table(Dynamic),
-            "both frequencies",
-            &dynamic,
-            "Angular frequency~rad/s~0; Frequency~Hz~0; G'~Pa~1; G''~Pa~2",
-        ),
-        (
-            Kind::Table(Dynamic),
-            "time and frequency",
-            &dynamic,
-            "Time~s~count; Freq~Hz~0; E'~MPa~1; E''~MPa~2; T~°C~=23",
-        ),
+        (Kind::Table(Dynamic), "rheometer sweep", &dynamic, "Angular frequency~rad/s~0; Storage modulus~kPa~1; Loss modulus~Pa~2; Tan(delta)~~tan"),
+        (Kind::Table(Dynamic), "both frequencies", &dynamic, "Angular frequency~rad/s~0; Frequency~Hz~0; G'~Pa~1; G''~Pa~2"),
+        (Kind::Table(Dynamic), "time and frequency", &dynamic, "Time~s~count; Freq~Hz~0; E'~MPa~1; E''~MPa~2; T~°C~=23"),
         (Kind::Table(Dynamic), "magnitude and phase", &dynamic, "f~Hz~0; |E*|~MPa~magnitude; phase~°~phase"),
         (Kind::Table(Dynamic), "loss factor", &dynamic, "omega~rad/s~0; G'~kPa~1; tan delta~~tan"),
         (Kind::Table(Storage), "storage alone", &storage, "f~Hz~0; G'~MPa~1"),
         (Kind::Isotherms(Dynamic), "isotherm", &dynamic, "f~Hz~0; E_stor~MPa~1; E_loss~MPa~2; T~°C~=18"),
         (Kind::Recording, "AFM", &curve, "t~s~0; F~nN~1; z~nm~2"),
-        (
-            Kind::Recording,
-            "nanoindenter",
-            &curve,
-            "Segment~~Load; Load On Sample~mN~1; Time On Sample~ms~0; Depth~µm~2",
-        ),
+        (Kind::Recording, "nanoindenter", &curve, "Segment~~Load; Load On Sample~mN~1; Time On Sample~ms~0; Depth~µm~2"),
         (Kind::Recording, "Chiaro", &curve, "Time~s~0; Load~uN~1; Piezo~nm~2; Auxiliary~~=0"),
     ];
     let mut all: Vec<Layout> = tables
         .iter()
-        .flat_map(|(kind, name, rows, spec)| STYLES.map(|style| table(*kind, name, &columns(spec), rows, style)))
+        .flat_map(|(kind, name, rows, spec)| styles().map(|style| table(*kind, name, &columns(spec), rows, style)))
         // a unit or symbol that a style cannot write
         .filter(|layout| !(layout.encoding == Encoding::Windows && layout.text.contains('δ')))
         .collect();
