@@ -64,7 +64,7 @@ impl Solution {
         self.begin_cold(problem);
         let Some(mut lacking) = missing(self, motion, &mut outcome, work) else { return outcome };
         for _ in 0..STEPS {
-            if size(lacking) <= tolerance {
+            if size(lacking) <= tolerance.max(10.0 * tight) {
                 self.motion = motion;
                 return Outcome { is_solved: true, ..outcome };
             }

@@ -13,10 +13,15 @@ const ROUNDINGS: usize = 40;
 const STEPS: usize = 30;
 
 impl Problem<'_> {
+    /// Whether the body moves a cell at all: not one that it meets at the very end of a step.
+    fn moves(&self, i: usize) -> bool {
+        self.entered[i] > 0.0
+    }
+
     /// Σ r |B w| and the derivatives of its rounded form, |v| → √(v² + ε²), in units that make the components alike.
     fn dissipation(&self, w: [f64; 3], units: [f64; 3], rounding: f64) -> (f64, [f64; 3], [[f64; 3]; 3]) {
         let (mut sum, mut slope, mut bend) = (0.0, [0.0; 3], [[0.0; 3]; 3]);
-        for i in self.touching() {
+        for i in self.touching().filter(|&i| self.moves(i)) {
             let modes: [[f64; 2]; 3] = std::array::from_fn(|k| rigid(k, self.places[i]).map(|value| units[k] * value));
             let v = [0, 1].map(|axis| (0..3).map(|k| w[k] * modes[k][axis]).sum::<f64>());
             let size = v[0].hypot(v[1]).hypot(rounding);
@@ -36,7 +41,7 @@ impl Problem<'_> {
     pub(super) fn load_factor(&self) -> (f64, [f64; 3]) {
         let (wanted, is_driven) =
             (self.wanted.map(|wanted| wanted.unwrap_or(0.0)), self.wanted.map(|wanted| wanted.is_some()));
-        let total: f64 = self.bound.iter().sum();
+        let total: f64 = self.touching().filter(|&i| self.moves(i)).map(|i| self.bound[i]).sum();
         let arm =
             self.touching().map(|i| self.bound[i] * self.places[i][0].hypot(self.places[i][1])).sum::<f64>() / total;
         let units = [1.0, 1.0, if arm > 0.0 { 1.0 / arm } else { 1.0 }];
