@@ -61,7 +61,8 @@ not_covered! {
     // parts of a scene
     SEVERAL_BODIES: "a contact of several rigid bodies",
         Ranks: ONE_PROCESS, Attraction: "compute one body", SteadyMotion: "take one", Friction: "take one";
-    FRAME_OF_INDENTER: "Frame::Indenter", Ranks: ONE_PROCESS, Attraction: "take Frame::Bodies", Friction: "take Frame::Bodies";
+    FRAME_OF_INDENTER: "Frame::Indenter",
+        Ranks: ONE_PROCESS, Attraction: "take Frame::Bodies", Friction: "take Frame::Bodies";
     SHARED_ROWS: "a contact that ranks share out",
         Attraction: "compute it in one process", SteadyMotion: "compute it in one process",
         Friction: ONE_PROCESS;

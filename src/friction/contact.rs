@@ -78,9 +78,9 @@ struct StepFields {
 #[must_use = "a contact that slides has not taken the step"]
 pub enum Outcome {
     /// Friction carries the load.
-    Holds(FrictionReport),
-    /// Friction cannot carry the forces along the surface: the body slides, and the contact is as it was before the step.
-    /// Prescribe its motion in place of the force to see it slide.
+    Holds(Box<FrictionReport>),
+    /// Friction cannot carry the forces along the surface: the body slides, and the contact is as it was before the
+    /// step. Prescribe its motion in place of the force to see it slide.
     Slides {
         /// Shifts along x1 and x2 \[m\] and the twist \[rad\] of the sliding motion, of the largest component 1.
         direction: [f64; 3],
@@ -150,8 +150,8 @@ impl FrictionContact {
     /// Q < f P. To press first and then to shear takes two steps, of no time if it happens at once.
     ///
     /// # Errors
-    /// As [`ViscoelasticContact::step`]; [`FrictionError::NotConverged`]; if a number is not finite, or the limit returns a
-    /// negative number or none. The contact is then as it was.
+    /// As [`ViscoelasticContact::step`]; [`FrictionError::NotConverged`]; if a number is not finite, or the limit returns
+    /// a negative number or none. The contact is then as it was.
     pub fn step(&mut self, dt: f64, load: Load, shear: ShearLoad) -> Result<Outcome> {
         shear.validate()?;
         self.normal.snapshot_into(&mut self.start);
@@ -247,7 +247,7 @@ impl FrictionContact {
         history.commit(free, &[]);
         std::mem::swap(solution, trial);
         let convolution_equivalents = kernel.equivalents(self.normal.grid().cells());
-        Ok(Outcome::Holds(FrictionReport { normal, iterations, convolution_equivalents, residual }))
+        Ok(Outcome::Holds(Box::new(FrictionReport { normal, iterations, convolution_equivalents, residual })))
     }
 
     /// Lets the rectangle cover the contact.

@@ -285,8 +285,8 @@ impl Solution {
             direction.iter_mut().zip(&*preconditioned).for_each(|(p, z)| *p = z + next / size * *p);
             size = next;
         }
-        // the step leaves −B ν of the gradient. A further motion takes a B Δd of it, which is B P Δd as far as the loads feel it:
-        // by M at first, then as the steps show (Broyden), while the same cells slip
+        // the step leaves −B ν of the gradient. A further motion takes a B Δd of it, which is B P Δd as far as the loads
+        // feel it: by M at first, then as the steps show (Broyden), while the same cells slip
         let met: [[f64; 3]; 3] = std::array::from_fn(|a| {
             std::array::from_fn(|b| {
                 let share =

@@ -4,10 +4,10 @@
 //!
 //! minimise ½ c τᵀ K τ + τᵀ (u_old − u_before) over |τ_i| ≤ r_i, Bᵀ τ = Q,
 //!
-//! whose multipliers are the motions Δd of the step that no load prescribes. The gradient g = c K τ + u_old − u_before −
-//! a B Δd is the slip of the body over the surface, reversed: it is 0 where cells stick, |τ| < r, and points against
-//! τ where they slip. a is the share of the step for which a cell was in contact (the entry rule): of what joins, only
-//! the motion after it was met is slip.
+//! whose multipliers are the motions Δd of the step that no load prescribes. The gradient g = c K τ + u_old −
+//! u_before − a B Δd is the slip of the body over the surface, reversed: it is 0 where cells stick, |τ| < r, and points
+//! against τ where they slip. a is the share of the step for which a cell was in contact (the entry rule): of what
+//! joins, only the motion after it was met is slip.
 
 use crate::linalg;
 
@@ -31,11 +31,11 @@ pub(super) struct Problem<'a> {
 }
 
 /// A motion of 1 along a component of the load, at a place.
-pub(super) fn rigid(component: usize, [x, y]: [f64; 2]) -> [f64; 2] {
+pub(super) fn rigid(component: usize, place: [f64; 2]) -> [f64; 2] {
     match component {
         0 => [1.0, 0.0],
         1 => [0.0, 1.0],
-        _ => [-y, x],
+        _ => [-place[1], place[0]],
     }
 }
 
