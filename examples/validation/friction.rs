@@ -1,7 +1,8 @@
-//! Friction on elastic states against closed forms.
+//! Friction against closed forms and another program.
 
 use viscocontact::Result;
-use viscocontact::analytic::{CattaneoMindlin, Hertz};
+use viscocontact::analytic::{CattaneoMindlin, Hertz, LubkinTorsion};
+use viscocontact::friction::{Coulomb, FrictionContact, ShearLoad};
 use viscocontact::plot::Legend;
 use viscocontact::prelude::*;
 
@@ -103,4 +104,48 @@ pub fn oblique() -> Outcome {
         ("area that sticks", contact.stick_area(), contact.contact_area(), 1e-12),
     ];
     Ok(Checked::new("sphere on creeping elastic states, oblique load", "τ = 0.2 p", &rows))
+}
+
+/// A sphere on cells, sheared by 0.875 f P: CONTACT's example `cattaneo`.
+pub fn contact_example() -> Outcome {
+    let (grid, force, friction) = (Grid::square(19, 19.0 * 0.133_333_3)?, 9.195, 0.4);
+    let body = || Material::constant_poisson(Elastic::new(200.0)?, 0.42);
+    let shape = FnGeometry::new(|x, y| 0.01 * (x * x + y * y));
+    let settings = Settings::default().with_tolerance(1e-10).with_edge(Edge::Allow);
+    let scene = ViscoelasticContact::builder(grid.clone()).geometry(&shape).settings(settings);
+    let mut contact = FrictionContact::new(scene.material(body()?.against(body()?)), Coulomb::new(friction)?)?;
+    for share in [0.0, 0.875] {
+        let _ = contact.step(0.0, Load::force(force), ShearLoad::force([share * friction * force, 0.0]))?;
+    }
+    let at = (0..grid.len()).find(|k| {
+        let [x, y] = grid.center(k / 19, k % 19);
+        x.abs() < 1e-9 && (y + 0.9333).abs() < 1e-3
+    });
+    let traction = at.map_or(f64::NAN, |k| contact.traction()[0][k].hypot(contact.traction()[1][k]));
+    let slips = contact.normal().contact_cells() - contact.stick_cells();
+    let rows = [
+        ("shift", contact.motion()[0], 8.155e-3, 1e-4),
+        ("cells that stick", contact.stick_cells() as f64, 45.0, 0.0),
+        ("cells that slip", slips as f64, 132.0, 0.0),
+        ("traction at y = −0.9333", traction, 0.575, 1e-3),
+    ];
+    Ok(Checked::new("sphere on 19² cells, ν = 0.42, sheared", "CONTACT (Vollebregt), example cattaneo", &rows))
+}
+
+/// A sphere on cells, twisted to half of what friction carries.
+pub fn torsion() -> Outcome {
+    let (radius, nu, cells) = (10.0, 0.3, 96);
+    let hertz = Hertz::new(radius, 1.0 / (1.0 - nu), 4.0 / 3.0 / (1.0 - nu) / radius)?;
+    let force = 4.0 / 3.0 / (1.0 - nu) / radius;
+    let body = || Material::constant_poisson(Elastic::new(1.0)?, nu);
+    let shape = FnGeometry::new(move |x, y| 0.5 * (x * x + y * y) / radius);
+    let scene = ViscoelasticContact::builder(Grid::square(cells, 2.4)?).geometry(&shape);
+    let mut contact = FrictionContact::new(scene.material(body()?.against(body()?)), Coulomb::new(FRICTION)?)?;
+    // two bodies turn as one of half the modulus
+    let exact = LubkinTorsion::new([FRICTION * hertz.max_pressure, 0.5], hertz.contact_radius, 0.813_568_13)?;
+    for torque in [0.0, exact.moment] {
+        let _ = contact.step(0.0, Load::force(force), ShearLoad::force([0.0; 2]).with_torque(torque))?;
+    }
+    let rows = [("angle at half of the limit", contact.motion()[2], exact.angle, 2e-3)];
+    Ok(Checked::new("sphere on 96² cells, ν = 0.3, twisted", "Lubkin 1951", &rows))
 }

@@ -62,7 +62,7 @@ fn zener() -> Outcome {
     Ok(checked)
 }
 
-const SCENES: [fn() -> Outcome; 39] = [
+const SCENES: [fn() -> Outcome; 41] = [
     elastic::convolution,
     elastic::hertz,
     elastic::hertz_ellipse,
@@ -102,6 +102,8 @@ const SCENES: [fn() -> Outcome; 39] = [
     friction::ball,
     friction::punch,
     friction::oblique,
+    friction::contact_example,
+    friction::torsion,
 ];
 
 /// The table, in Markdown.

@@ -6,7 +6,7 @@ use crate::contact::{Builder, Snapshot, StepError, StepReport, TimeRule, Viscoel
 use crate::error::{Error, FrictionError, Result, Special, UserError};
 use crate::friction::kernel::{TangentialKernel, TangentialResponse};
 use crate::friction::limit::FrictionLimit;
-use crate::friction::load::{Component, ShearLoad};
+use crate::friction::load::{Component, LARGEST, ShearLoad};
 use crate::friction::newton::Work;
 use crate::friction::problem::{Cell, Problem, Solution, rigid};
 use crate::friction::region::{Rectangle, extent};
@@ -292,7 +292,7 @@ impl FrictionContact {
         for (k, at) in self.region.on_grid(columns).enumerate() {
             let p = pressure[at];
             bound[k] = if p > 0.0 { self.limit.limit(p) } else { 0.0 };
-            if !(bound[k] >= 0.0 && bound[k].is_finite()) {
+            if !(0.0..=LARGEST).contains(&bound[k]) {
                 return Err(not_a_limit(bound[k]));
             }
             let waited = (gap[at].max(0.0) / closed(places[k]).max(f64::MIN_POSITIVE) - touched) / (1.0 - touched);
@@ -357,5 +357,9 @@ impl FrictionContact {
 }
 
 fn not_a_limit(value: f64) -> Error {
-    UserError::new("a limit of friction", format!("it returned {value} Pa where a number >= 0 is needed")).into()
+    UserError::new(
+        "a limit of friction",
+        format!("it returned {value} Pa where a number between 0 and 1e100 is needed"),
+    )
+    .into()
 }

@@ -1,6 +1,9 @@
 //! What acts along the surface.
 
-use crate::error::{Result, finite};
+use crate::error::{Result, within};
+
+/// Forces and motions below this are numbers in all sums.
+pub(super) const LARGEST: f64 = 1e100;
 
 /// One component of what acts along the surface: the shift along x1 or x2, or the twist about the origin.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,10 +51,11 @@ impl ShearLoad {
             ["force along x2", "displacement along x2"],
             ["torque", "angle"],
         ]) {
-            match *component {
-                Component::Force(value) => finite(force, value)?,
-                Component::Motion(value) => finite(motion, value)?,
+            let (field, value) = match *component {
+                Component::Force(value) => (force, value),
+                Component::Motion(value) => (motion, value),
             };
+            within(field, value, value.abs() <= LARGEST, "at most 1e100 in absolute value")?;
         }
         Ok(())
     }

@@ -46,7 +46,7 @@ impl Problem<'_> {
             self.touching().map(|i| self.bound[i] * self.places[i][0].hypot(self.places[i][1])).sum::<f64>() / total;
         let units = [1.0, 1.0, if arm > 0.0 { 1.0 / arm } else { 1.0 }];
         let load: [f64; 3] = std::array::from_fn(|k| if is_driven[k] { units[k] * wanted[k] } else { 0.0 });
-        let size = load.iter().map(|q| q * q).sum::<f64>().sqrt();
+        let size = load[0].hypot(load[1]).hypot(load[2]);
         if size == 0.0 {
             return (f64::INFINITY, [0.0; 3]);
         }
@@ -55,7 +55,7 @@ impl Problem<'_> {
             let most = motion.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
             motion.map(|value| value / most)
         };
-        let mut w = load.map(|q| q / (size * size));
+        let mut w = load.map(|q| q / size / size);
         if total == 0.0 {
             return (0.0, shown(w));
         }

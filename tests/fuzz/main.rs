@@ -15,6 +15,7 @@ mod files;
 mod maps;
 mod models;
 mod pictures;
+mod rubbing;
 mod scenes;
 mod source;
 mod states;
@@ -36,6 +37,7 @@ fn targets() -> Vec<Target> {
     targets.extend(files::targets());
     targets.extend(states::targets());
     targets.extend(pictures::targets());
+    targets.extend(rubbing::targets());
     targets.extend(checkpoints::targets());
     targets
 }
