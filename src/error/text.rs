@@ -68,10 +68,12 @@ pub enum TextError {
         found: String,
     },
 
-    /// A heading has no unit of the quantity of its column, or one of two meanings.
+    /// A heading has no unit of the quantity of its column, or one of two meanings: beside a factor, by which values
+    /// may be multiplied or divided, after words that may change it, or of logarithms.
     #[error(
         "line {line}, column {column}: the heading {heading:?} has no unit of the {quantity}, or an ambiguous \
-        one; write it in brackets, as in '[{example}]', or state it (TextTable::with_heading, Units)"
+        one; write it in brackets, as in '[{example}]' or '[10^3 {example}]', or state it \
+        (TextTable::with_heading, Units)"
     )]
     Unit {
         /// The line of the headings, from 1.

@@ -104,6 +104,7 @@ impl fmt::Display for TakenColumn {
                 write!(f, ", 1 {text} = {:e} {}", sizes[0], self.quantity.si())
             }
             UnitOf::Other(_) => f.write_str(", of another unit"),
+            UnitOf::Unclear(_) => f.write_str(", of an ambiguous unit"),
             UnitOf::Sizes(_, sizes) if sizes.len() > 1 => f.write_str(", of a unit with two meanings"),
             _ => write!(f, " in {}", self.quantity.si()),
         }
@@ -187,7 +188,7 @@ impl TextTable {
         };
         let candidates = [
             named(&has_unit),
-            named(&|column| column.unit_of == UnitOf::Unnamed),
+            named(&|column| matches!(column.unit_of, UnitOf::Unnamed | UnitOf::Unclear(_))),
             columns.iter().filter(|column| wanted.by_unit && is_by_unit(column)).cloned().collect(),
             named(&|_| true),
         ];

@@ -287,7 +287,7 @@ fn sized(given: Option<(&'static str, Option<f64>)>, column: TakenColumn) -> Res
         UnitOf::Sizes(unit, sizes) if !sizes.iter().any(|&size| same(size, given)) => {
             refused(unit, sizes.first().copied())
         }
-        UnitOf::Other(unit) => refused(unit, None),
+        UnitOf::Other(unit) | UnitOf::Unclear(unit) => refused(unit, None),
         _ => Ok(column.with_unit(given)),
     }
 }

@@ -160,7 +160,7 @@ fn points(
     for (k, column) in taken.iter().enumerate() {
         let given = units[usize::from(k == last)];
         let differs = |size: f64| !same(size, given.factor());
-        if column.unit().is_ok_and(differs) || matches!(column.unit_of, UnitOf::Other(_)) {
+        if column.unit().is_ok_and(differs) || matches!(column.unit_of, UnitOf::Other(_) | UnitOf::Unclear(_)) {
             let (heading, given) = (column.heading().to_owned(), name(Quantity::LENGTH, given.factor()));
             return Err(MapError::OtherUnit { column: column.index() + 1, heading, given }.into());
         }
