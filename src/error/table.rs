@@ -45,8 +45,8 @@ pub enum TableError {
 
     /// Two values are given for the same time or frequency: average them, or keep one.
     #[error(
-        "{table}: {place} and {earlier} give two values for {column} = {value}: give their mean, or read several \
-        temperatures as isotherms (Isotherm::from_csv_reader)"
+        "{table}: {place} and {earlier} give two values for {column} = {value}: give their mean, take one section of \
+        the file (TextTable::section), or read several temperatures as isotherms (Isotherm::from_csv_reader)"
     )]
     Duplicate {
         /// Which table.
