@@ -1,8 +1,11 @@
-//! Sections of a table: instruments write the headings anew before every step or interval.
+//! Rows of units, and sections of a table: instruments write the headings anew before every step or interval.
 
 use super::lines::{Text, TextRow};
-use super::table::are_units;
+use super::unit::readings;
 use crate::error::TextError;
+
+/// Most characters of a unit, as of `mrad/(N.m)`: a row of longer words is none of units.
+const LONGEST_UNIT: usize = 12;
 
 /// First and last lines between the sections of a table: each repeats its headings, below lines that belong to no row,
 /// and above its row of units, if there is one.
@@ -40,4 +43,23 @@ pub(super) fn gaps(
         Ok([start, own_units.map_or(line, |row| row.line)])
     };
     again.into_iter().map(gap).collect()
+}
+
+/// Whether the fields of a row are units: short words, of which one at least is known, and no number but a few ones.
+pub(super) fn are_units(row: &TextRow) -> bool {
+    let fields = || row.fields.iter().map(|field| bare(field)).filter(|field| !["", "-", "%"].contains(field));
+    let is_known = |field: &&str| !readings(field).is_empty();
+    let (all, known, ones) =
+        (fields().count(), fields().filter(is_known).count(), fields().filter(|field| *field == "1").count());
+    // a letter may be a symbol: h of a depth
+    let is_clear = |field: &&str| is_known(field) && field.chars().count() > 1;
+    let are_few = 2 * ones <= all && row.numbers() <= ones;
+    let are_short = fields().all(|field| field.chars().count() <= LONGEST_UNIT);
+    known > 0 && are_few && (known + ones == all || are_short && fields().any(|field| is_clear(&field)))
+}
+
+/// A unit without the brackets around it.
+pub(super) fn bare(unit: &str) -> &str {
+    let within = |open: char, close: char| unit.strip_prefix(open)?.strip_suffix(close);
+    within('[', ']').or_else(|| within('(', ')')).map_or(unit, str::trim)
 }

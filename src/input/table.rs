@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::format::{Delimiter, TextFormat};
 use super::lines::{Text, TextRow, shortened};
-use super::sections::gaps;
+use super::sections::{are_units, bare, gaps};
 use super::unit::readings;
 use crate::error::{Result, TextError};
 
@@ -14,9 +14,6 @@ use crate::error::{Result, TextError};
 const SEARCHED: usize = 1000;
 /// Rows in which the same two columns have numbers: a table has begun.
 const ROWS_OF_NUMBERS: usize = 3;
-/// Most characters of a unit, as of `mrad/(N.m)`: a row of longer words is none of units.
-const LONGEST_UNIT: usize = 12;
-
 /// A table in a text file, as it was understood: print it to see how.
 ///
 /// The table begins with the first rows that have numbers in the same two columns. The row above them has the
@@ -245,25 +242,6 @@ fn first_of_numbers(rows: &[TextRow], are_all: bool) -> Option<usize> {
         start -= 1;
     }
     Some(start)
-}
-
-/// Whether the fields of a row are units: short words, of which one at least is known, and no number but a few ones.
-pub(super) fn are_units(row: &TextRow) -> bool {
-    let fields = || row.fields.iter().map(|field| bare(field)).filter(|field| !["", "-", "%"].contains(field));
-    let is_known = |field: &&str| !readings(field).is_empty();
-    let (all, known, ones) =
-        (fields().count(), fields().filter(is_known).count(), fields().filter(|field| *field == "1").count());
-    // a letter may be a symbol: h of a depth
-    let is_clear = |field: &&str| is_known(field) && field.chars().count() > 1;
-    let are_few = 2 * ones <= all && row.numbers() <= ones;
-    let are_short = fields().all(|field| field.chars().count() <= LONGEST_UNIT);
-    known > 0 && are_few && (known + ones == all || are_short && fields().any(|field| is_clear(&field)))
-}
-
-/// A unit without the brackets around it.
-fn bare(unit: &str) -> &str {
-    let within = |open: char, close: char| unit.strip_prefix(open)?.strip_suffix(close);
-    within('[', ']').or_else(|| within('(', ')')).map_or(unit, str::trim)
 }
 
 /// The fields of a row; units in brackets belong to the field before them, if blanks have torn them off.
