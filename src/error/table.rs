@@ -3,7 +3,7 @@ use std::fmt;
 use crate::rounded::rounded;
 
 /// A place in a table: the entry of a slice, or the line of a file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Place {
     /// Index into the slices given.

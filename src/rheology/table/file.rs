@@ -236,7 +236,7 @@ impl Columns {
                 values[1] = if self.complex { modulus / tan.hypot(1.0) } else { modulus };
                 values[2] = values[1] * tan;
             }
-            TableRow { place: Place::Line(row.line), x: values.remove(0), values }
+            TableRow::new(Place::Line(row.line), values.remove(0), values)
         });
         Ok(rows.collect())
     }
