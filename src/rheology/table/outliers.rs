@@ -9,7 +9,7 @@ use crate::rheology::table::measured::FLOOR;
 
 /// Relative deviations below this are not worth a warning.
 pub(super) const TOLERABLE: f64 = 5e-3;
-/// A fit of all samples leaves less of an outlier than a fit of the others, but at least this many deviations.
+/// A fit of all samples leaves less of an outlier inside than a fit of the others, but at least this many deviations.
 const SUSPECT: f64 = 2.0;
 /// Of so many samples, one may be an outlier: more are a property of the table.
 const SAMPLES_PER_OUTLIER: usize = 10;
@@ -26,13 +26,14 @@ impl Search {
         while kept.len() >= FEW.max(SAMPLES_PER_OUTLIER * (outliers.len() + 1)) {
             let whole = self.nearest(&kept);
             let noise = whole.noise(&kept).max(FLOOR);
-            let is_end = |k: usize| k == 0 && kept[0].x > 0.0;
             let left = |k: usize| whole.misfit(&kept[k]).abs() * kept[k].weight.sqrt();
-            let suspects = (0..kept.len()).filter(|&k| is_end(k) || left(k) > SUSPECT * noise);
-            let worst = suspects.clone().max_by(|&a, &b| left(a).total_cmp(&left(b)));
-            let ends = suspects.filter(|&k| is_end(k) || kept.get(k + 1).is_none_or(|next| next.x < kept[k].x));
-            let excess = |k: usize| self.excess(&kept, k, scatter);
-            let found = ends.chain(worst).map(|k| (k, excess(k))).max_by(|a, b| a.1.0.total_cmp(&b.1.0));
+            // terms follow rows at the ends, whatever they are
+            let is_end = |k: usize| k == 0 && kept[0].x > 0.0 || kept.get(k + 1).is_none_or(|next| next.x < kept[k].x);
+            let worst = (0..kept.len()).max_by(|&a, &b| left(a).total_cmp(&left(b)));
+            let worst = worst.filter(|&k| left(k) > SUSPECT * noise && !is_end(k));
+            let tried =
+                (0..kept.len()).filter(|&k| is_end(k)).chain(worst).map(|k| (k, self.excess(&kept, k, scatter)));
+            let found = tried.max_by(|a, b| a.1.0.total_cmp(&b.1.0));
             let Some((k, (_, deviation))) = found.filter(|(_, (excess, _))| *excess > 1.0) else { break };
             outliers.push((kept.remove(k), deviation));
         }
