@@ -1,7 +1,7 @@
 //! Tables with one row that is off, at either end or inside: creep is as right as that of the table without it, or the fit
 //! warns. `BAD_ROWS` (100) tables of each kind are drawn.
 
-use crate::common::{Draws, from_environment};
+use crate::common::{Draws, from_environment, noise};
 use viscocontact::prelude::*;
 use viscocontact::rheology::{CreepSeries, CreepSpectrum, FitWarning, RelaxationSpectrum, TableError};
 use viscocontact::{Error, Result};
@@ -33,13 +33,13 @@ fn judge(is_creep: bool) {
     let count = from_environment("BAD_ROWS", 100);
     let (mut right, mut warned, mut refused, mut silent, mut worst) = (0, 0, 0, 0, f64::INFINITY);
     for seed in 0..count {
-        let mut draw = Draws::new(seed);
+        let (mut draw, mut noise) = (Draws::new(seed), noise(seed));
         let (relaxation, creep) = body(&mut draw);
         let (rows, first, decades) = (20 + draw.below(41), 10f64.powf(draw.between(-2.0, 0.0)), draw.between(2.5, 5.0));
         let scatter = if draw.below(5) < 2 { 0.0 } else { draw.between(0.001, 0.01) };
         let times: Vec<f64> = (0..rows).map(|k| first * 10f64.powf(decades * k as f64 / (rows - 1) as f64)).collect();
         let value = |t: f64| if is_creep { creep.compliance(t) } else { relaxation.modulus(t) };
-        let clean: Vec<(f64, f64)> = times.iter().map(|&t| (t, value(t) * (1.0 + scatter * draw.normal()))).collect();
+        let clean: Vec<(f64, f64)> = times.iter().map(|&t| (t, value(t) * (1.0 + scatter * noise()))).collect();
         let off = draw.between(0.01, 0.2) * [-1.0, 1.0][draw.below(2)];
         let mut table = clean.clone();
         table[[0, rows - 1, 1 + draw.below(rows - 2)][draw.below(3)]].1 *= 1.0 + off;

@@ -126,7 +126,7 @@ const AROUND: usize = 4;
 /// Data without noise may deviate by the rounding of their digits; those printed with few digits, by one in the last.
 const LEAST_NOISE: f64 = 1e-9;
 /// Number of values for a fit of constant, slope and one term.
-const LEAST_ROWS: usize = 4;
+pub(super) const LEAST_ROWS: usize = 4;
 
 /// Sorts the rows of a table. Returns its samples, in ascending order.
 pub(crate) fn validated(layout: Layout, rows: &mut [TableRow]) -> Result<Vec<Sample>> {

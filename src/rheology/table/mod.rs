@@ -19,7 +19,7 @@ use crate::rheology::fit::{FitReport, FitWarning, MOST_MISFIT, Sample, Search};
 use crate::rheology::{CreepSeries, Tension};
 use crate::values::Counted;
 pub use data::Experiment;
-use data::{Deformation, TableRow, averaged_repeats, validated, wrong_way};
+use data::{Deformation, LEAST_ROWS, TableRow, averaged_repeats, validated, wrong_way};
 use uncertainty::HIDDEN_MODULUS;
 
 /// Denser tables are averaged to this many values per decade, ...
@@ -250,7 +250,7 @@ impl Measurements {
         let (averaged, outliers) = (if is_late { &wider } else { &search }).without_outliers(&averaged, self.scatter);
         let of_others = outliers.first().map(|&(Sample { x, .. }, deviation)| FitWarning::Outlier { x, deviation });
         let first = if is_late { averaged[0].x } else { first };
-        if is_late && search.misses(&wider, &averaged[1..]) {
+        if is_late && averaged.len() > LEAST_ROWS && search.misses(&wider, &averaged[1..]) {
             search = wider;
         }
         let measured = search.measured(&averaged);
