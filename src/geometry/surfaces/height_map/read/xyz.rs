@@ -222,13 +222,15 @@ fn axis(points: &[Point], name: &'static str, axis: usize) -> Result<RegularAxis
     }
     let (origin, spacing) = fitted_line(&positions, value);
     positive("spacing of the points", spacing)?;
+    let off = |k: usize| ((value(k) - origin) / spacing - positions[k]).abs();
+    if let Some(k) =
+        (0..order.len()).max_by(|&a, &b| off(a).total_cmp(&off(b))).filter(|&k| off(k) > MAX_OFFSET || off(k).is_nan())
+    {
+        let (line, value, off, allowed) = (points[order[k]].line, value(k), off(k), MAX_OFFSET);
+        return Err(MapError::OffGrid { line, axis: name, value, spacing, off, allowed }.into());
+    }
     let mut indices = vec![0; order.len()];
     for (k, &position) in positions.iter().enumerate() {
-        let off = ((value(k) - origin) / spacing - position).abs();
-        if off > MAX_OFFSET || off.is_nan() {
-            let (line, allowed) = (points[order[k]].line, MAX_OFFSET);
-            return Err(MapError::OffGrid { line, axis: name, value: value(k), spacing, off, allowed }.into());
-        }
         indices[order[k]] = position as usize;
     }
     Ok(RegularAxis { cells: (position as usize).saturating_add(1), spacing, indices })
