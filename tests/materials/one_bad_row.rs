@@ -65,7 +65,7 @@ fn judge(is_creep: bool) {
                 } else {
                     silent += 1;
                     // a row that is nearly within the scatter moves the end of the curve
-                    assert!(error(&body) < 10.0 * scatter, "{seed}: {} {}", error(&body), body.report());
+                    assert!(error(&body) < 12.0 * scatter, "{seed}: {} {}", error(&body), body.report());
                 }
             }
         }

@@ -118,7 +118,7 @@ pub(super) const DEVIATIONS: f64 = 6.0;
 const MOST_NOISE: f64 = 0.5;
 /// ... in short tables, whose scatter is hard to distinguish from their trend, by no more than this.
 const MOST_NOISE_OF_FEW: f64 = 0.1;
-pub(super) const FEW: usize = 12;
+const FEW: usize = 12;
 /// One row of so many moves the curve by a hundredth of its deviation: it may go the wrong way.
 const ROWS_PER_KNOCK: usize = 100;
 /// Rows before and after one, from which its scatter is judged.
