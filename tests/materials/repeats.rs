@@ -39,7 +39,7 @@ fn one_row_of_thousands_may_go_the_wrong_way() {
     table[2000].1 *= 0.99;
     let body = Measurements::creep(&table).and_then(|table| table.fit()).unwrap();
     let Some(FitWarning::Outlier { x, deviation }) = body.report().warning() else { panic!("{}", body.report()) };
-    assert!(x == at && (deviation + 0.01).abs() < 1e-3, "{x} {deviation}");
+    assert!(x == at && (deviation + 0.01).abs() < 3e-3, "{x} {deviation}");
     for t in [1.0, 100.0, at, 1900.0] {
         assert!((body.creep_compliance(t) / exact.creep_compliance(t) - 1.0).abs() < 1e-3);
     }

@@ -115,7 +115,7 @@ impl Experiment {
 /// Data may deviate from a monotone curve by this many standard deviations of their scatter, ...
 pub(super) const DEVIATIONS: f64 = 6.0;
 /// ... but by no more than this, relatively; ...
-const MOST_NOISE: f64 = 0.5;
+pub(super) const MOST_NOISE: f64 = 0.5;
 /// ... in short tables, whose scatter is hard to distinguish from their trend, by no more than this.
 const MOST_NOISE_OF_FEW: f64 = 0.1;
 const FEW: usize = 12;
