@@ -14,7 +14,7 @@ const LEAST: f64 = 1e-2;
 /// A fit of all samples leaves less of an outlier inside than a fit of the others, but at least this many deviations.
 const SUSPECT: f64 = 2.0;
 /// What a fit misses of an end without scatter, over what it misses of the sample next to it, varies by less.
-const CONTINUED: f64 = 3.0;
+const CONTINUED: f64 = 2.0;
 /// Of so many rows, one may be an outlier: more are a property of the table, and fewer do not tell their scatter.
 const ROWS_PER_OUTLIER: usize = 20;
 

@@ -227,7 +227,7 @@ pub fn rows(t: &mut Table) {
         "HeightMap::from_points",
         points(&[&square[..], &[[2.3, 1.0, 2.0]]].concat()),
         File,
-        "line 1: x = 0 m is 0.04 spacings…off the regular grid…",
+        "line 4: x = 1 m is 0.076 spacings…off the regular grid…",
     );
     let diagonal: Vec<_> = (0..200).map(|k| [f64::from(k), f64::from(k), 0.0]).collect();
     t.row("HeightMap::from_points", points(&diagonal), File, "200 points are too few for…200 x 200…: interpolate…");
