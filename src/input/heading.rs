@@ -177,7 +177,7 @@ fn unit_texts<'a>(heading: &'a str) -> Vec<UnitText<'a>> {
 /// What the outermost pairs of brackets enclose, and where it begins; none in a heading with a bracket without its
 /// counterpart.
 fn enclosed(heading: &str) -> Vec<(usize, &str)> {
-    let (mut open, mut found): (Vec<(usize, char)>, Vec<(usize, &str)>) = (Vec::new(), Vec::new());
+    let (mut open, mut found) = (Vec::<(usize, char)>::new(), Vec::new());
     for (at, c) in heading.char_indices() {
         for [left, right] in BRACKETS {
             if c == left {
