@@ -179,11 +179,13 @@ pub(crate) fn wrong_way(layout: Layout, rows: &[TableRow], scatter: Option<f64>)
         let (change, noise) = (deviations[worst], explained(worst));
         if change > noise {
             let off = excesses.iter().filter(|excess| **excess > 1.0).count();
-            let TableRow { place, x, ref values, .. } = rows[worst];
+            let TableRow { place, ref values, .. } = rows[worst];
             if off * ROWS_PER_KNOCK > rows.len() || change > MOST_NOISE_OF_FEW {
                 return Err(TableError::WrongWay { table, place, column, value: values[index], change, noise }.into());
             }
-            let rises = rising[worst] > curve[worst];
+            // rows after a knock deviate, too
+            let Some(most) = (0..rows.len()).max_by(|&a, &b| deviations[a].total_cmp(&deviations[b])) else { continue };
+            let (x, change, rises) = (rows[most].x, deviations[most], rising[most] > curve[most]);
             let deviation = if rises == (function != MaterialFunction::Relaxation) { change } else { -change };
             knock = Some(FitWarning::Outlier { x, deviation });
         }
