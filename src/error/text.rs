@@ -4,7 +4,8 @@
 pub enum TextError {
     /// A line has the wrong number of columns.
     #[error(
-        "line {line}: {found} columns separated by {delimiter}, but {expected} are needed ({columns}); TextFormat::with_delimiter states another delimiter; if another table begins here, split the file"
+        "line {line}: {found} columns separated by {delimiter}, but {expected} are needed ({columns}); \
+        TextFormat::with_delimiter states another delimiter; if another table begins here, split the file"
     )]
     Columns {
         /// The line, from 1.

@@ -104,7 +104,7 @@ fn factor(rest: &str) -> Option<String> {
         let (before, text) = (&rest[..at], &rest[at..]);
         let number = text.find(|c: char| !c.is_ascii_digit()).map_or(text, |end| &text[..end]);
         let after = &text[number.len()..];
-        let is_written = after.starts_with(['^', 'e', 'E', '⁻', '⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹', '×']);
+        let is_written = after.starts_with(|c: char| "^eE⁻⁰¹²³⁴⁵⁶⁷⁸⁹×".contains(c));
         let marked = |mark: char| {
             let left = before.trim_end().strip_suffix(mark);
             let is_star = before.ends_with(' ') && left.is_some_and(|left| !left.ends_with(' '));

@@ -7,8 +7,8 @@ use super::encoding::decoded;
 use super::format::{Delimiter, TextFormat};
 use crate::error::{Error, FileError, Result, TextError};
 
-/// Most rows at the beginning and at the end of a text, and most fields, from which delimiter and decimal mark are found
-/// out: the beginning may be a long preamble.
+/// Most rows at the beginning and at the end of a text, and most fields, from which delimiter and decimal mark are
+/// found out: the beginning may be a long preamble.
 const ROWS: usize = 200;
 const FIELDS: usize = 10_000;
 /// Of delimiters that make nearly as many numbers as the best, the first is taken.

@@ -143,8 +143,8 @@ const UNITS: [(Quantity, &[(&str, f64)]); 6] = [
     ),
 ];
 
-/// Headings without a unit, or with one of several meanings: a factor by which the values may be multiplied or divided, logarithms,
-/// words that may change the unit.
+/// Headings without a unit, or with one of several meanings: a factor by which the values may be multiplied or
+/// divided, logarithms, words that may change the unit.
 const REFUSED: [(Quantity, &[&str]); 6] = [
     (
         Quantity::FORCE,

@@ -1,5 +1,5 @@
-//! Tables with one row that is off, at either end or inside: creep is as right as that of the table without it, or the fit
-//! warns. `BAD_ROWS` (100) tables of each kind are drawn.
+//! Tables with one row that is off, at either end or inside: creep is as right as that of the table without it, or
+//! the fit warns. `BAD_ROWS` (100) tables of each kind are drawn.
 
 use crate::common::{Draws, from_environment, noise};
 use viscocontact::prelude::*;

@@ -114,7 +114,8 @@ impl FittedSeries {
     }
 
     /// Slows terms of relaxation that have decayed before the first sample, until the modulus of none at t = 0 is more
-    /// than `hidden` times the first sample: no sample bounds it, and the viscosity of such a term would stop the creep.
+    /// than `hidden` times the first sample: no sample bounds it, and the viscosity of such a term would stop the
+    /// creep.
     pub(super) fn bound(&mut self, samples: &[Sample], hidden: f64) {
         let (first, most) = (first_time(samples), hidden * samples[0].value);
         if first == 0.0 {

@@ -83,7 +83,8 @@ impl fmt::Display for FitWarning {
             FitWarning::Outlier { x, deviation } => {
                 return write!(
                     f,
-                    "the sample at {x:.3e} is {:.1} % off the curve of the others, and counts little or not at all: check it",
+                    "the sample at {x:.3e} is {:.1} % off the curve of the others, and counts little or not at all: \
+                     check it",
                     100.0 * deviation
                 );
             }
@@ -119,8 +120,8 @@ pub struct FitReport {
 
 debug_by! {
     self: FitReport =>
-    samples: Counted(&self.samples), terms: self.terms, averaged: self.averaged, wrong_way: self.wrong_way, interval: Counted(&self.interval),
-    warning: self.warning
+    samples: Counted(&self.samples), terms: self.terms, averaged: self.averaged, wrong_way: self.wrong_way,
+    interval: Counted(&self.interval), warning: self.warning
 }
 
 impl FitReport {

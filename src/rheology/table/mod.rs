@@ -28,8 +28,8 @@ const MEANS_PER_DECADE: f64 = 24.0;
 const DECADES: f64 = 30.0;
 /// Factor by which the times of the terms extend beyond the data.
 const BEYOND: f64 = 3.0;
-/// The largest modulus of a term at t = 0 over the first of relaxation moduli. With 1 a steep power law is off by more than
-/// 1e-3; with 3 a first modulus that is a little high makes the creep of 2 % of tables a fifth too small.
+/// The largest modulus of a term at t = 0 over the first of relaxation moduli. With 1 a steep power law is off by
+/// more than 1e-3; with 3 a first modulus that is a little high makes the creep of 2 % of tables a fifth too small.
 const HIDDEN: f64 = 2.0;
 /// The same before the first of relaxation moduli, where shorter terms fit those after it better.
 const BEYOND_FAST: f64 = 10.0;

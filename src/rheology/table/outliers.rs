@@ -1,7 +1,7 @@
 //! Samples that contradict all others: a step of the strain that rings or lasts, a knock, a slip of the pen.
 //!
-//! Left in, one would not only be off itself. The first modulus of relaxation, a little high, is followed by a term that
-//! has a large modulus at t = 0, which nothing else bounds and which slows the creep.
+//! Left in, one would not only be off itself. The first modulus of relaxation, a little high, is followed by a term
+//! that has a large modulus at t = 0, which nothing else bounds and which slows the creep.
 
 use super::data::{DEVIATIONS, MOST_NOISE};
 use crate::rheology::fit::{FittedSeries, Sample, Search};
@@ -9,7 +9,8 @@ use crate::rheology::table::measured::FLOOR;
 
 /// Uncertainties and systematic misfits below this need no warning.
 pub(super) const TOLERABLE: f64 = 5e-3;
-/// Relative deviations of outliers are at least this: less does little, and curves without scatter are continued no better.
+/// Relative deviations of outliers are at least this: less does little, and curves without scatter are continued no
+/// better.
 const LEAST: f64 = 1e-2;
 /// A fit of all samples leaves less of an outlier inside than a fit of the others, but at least this many deviations.
 const SUSPECT: f64 = 2.0;
@@ -48,15 +49,15 @@ impl Search {
         (kept, outliers)
     }
 
-    /// How far a sample deviates from the fit of the others, over what their scatter explains; and relatively. An end must
-    /// deviate as far from a parabola through its neighbours, and further than the sample next to it deviates from the
-    /// fit of the rest: few curves can be continued.
+    /// How far a sample deviates from the fit of the others, over what their scatter explains; and relatively. An end
+    /// must deviate as far from a parabola through its neighbours, and further than the sample next to it deviates
+    /// from the fit of the rest: few curves can be continued.
     fn excess(&self, samples: &[Sample], k: usize, is_end: bool, scatter: Option<f64>) -> (f64, f64) {
         let (fit, others, deviation) = self.left_out(samples, k);
         let parameters = fit.parameters() as f64;
         let noise = scatter.unwrap_or(0.0).max(fit.noise(&others));
-        // the curve itself is uncertain, and few samples tell their scatter poorly: of Student's t, whose square exceeds
-        // six deviations' as rarely, by a factor of about 1 + 12/n
+        // the curve itself is uncertain, and few samples tell their scatter poorly: of Student's t, whose square
+        // exceeds six deviations' as rarely, by a factor of about 1 + 12/n
         let spread = (1.0 + 2.0 * parameters / others.len() as f64) * (1.0 + 12.0 / fit.freedoms(&others));
         let mut explained = (DEVIATIONS * noise * (spread / samples[k].weight).sqrt()).max(LEAST);
         let mut found = deviation.abs();

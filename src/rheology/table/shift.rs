@@ -142,9 +142,9 @@ pub(super) fn shift_between(colder: &Isotherm, warmer: &Isotherm, is_vertical: b
 }
 
 impl Pair<'_> {
-    /// The shift by one column, and its scatter: the least with which the isotherms superpose as well as it says, inside
-    /// the range. Smooth isotherms superpose less well than their scatter, for no model of the body is exact; with too
-    /// small a scatter, each difference costs so much that the shift flees from the overlap.
+    /// The shift by one column, and its scatter: the least with which the isotherms superpose as well as it says,
+    /// inside the range. Smooth isotherms superpose less well than their scatter, for no model of the body is exact;
+    /// with too small a scatter, each difference costs so much that the shift flees from the overlap.
     fn superposed(
         &self,
         column: usize,

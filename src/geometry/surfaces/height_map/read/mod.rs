@@ -98,7 +98,8 @@ fn count(cells: [usize; 2], spacing: [f64; 2]) -> Result<usize> {
     Ok(Grid::new(cells, [cells[0] as f64 * spacing[0], cells[1] as f64 * spacing[1]])?.len())
 }
 
-/// The heights that a file lists in words, NaN for words where `is_word` is true and numbers for missing points; there must be `count` words.
+/// The heights that a file lists in words, NaN for words where `is_word` is true and numbers for missing points; there
+/// must be `count` words.
 fn listed<'a>(
     words: impl Iterator<Item = &'a str>,
     is_word: impl Fn(&str) -> bool,
