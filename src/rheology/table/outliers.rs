@@ -68,9 +68,11 @@ impl Search {
             } else {
                 samples[..k].iter().rev().filter(own).take(3).collect()
             };
-            found = found.min(continued(&neighbours, &samples[k]).abs());
+            // both scatter too
+            let scattered = SUSPECT * noise / samples[k].weight.sqrt();
+            found = found.min(continued(&neighbours, &samples[k]).abs() + scattered);
             let next = self.left_out(&others, if k == 0 { 0 } else { k - 1 }).2;
-            explained = explained.max(CONTINUED * next.abs());
+            explained = explained.max(CONTINUED * (next.abs() - scattered));
         }
         (found / explained, deviation)
     }
