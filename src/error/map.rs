@@ -152,8 +152,8 @@ pub enum MapError {
         exact: bool,
     },
 
-    /// A point is not on the regular grid of the other points.
-    #[error("line {line}: {axis} = {} m is {:.2} spacings of {} m off the regular grid of the points; {:.3} are \
+    /// The points are not on a regular grid: the one that is furthest off.
+    #[error("line {line}: {axis} = {} m is {:.3} spacings of {} m off the regular grid of the points; {:.3} are \
         allowed: interpolate the points on a regular \
         grid", rounded(*.value, 5), .off, rounded(*.spacing, 4), .allowed)]
     OffGrid {

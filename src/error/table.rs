@@ -3,7 +3,7 @@ use std::fmt;
 use crate::rounded::rounded;
 
 /// A place in a table: the entry of a slice, or the line of a file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Place {
     /// Index into the slices given.
@@ -45,8 +45,8 @@ pub enum TableError {
 
     /// Two values are given for the same time or frequency: average them, or keep one.
     #[error(
-        "{table}: {place} and {earlier} give two values for {column} = {value}: give their mean, or read several \
-        temperatures as isotherms (Isotherm::from_csv_reader)"
+        "{table}: {place} and {earlier} give two values for {column} = {value}: give their mean, take one section of \
+        the file (TextTable::section), or read several temperatures as isotherms (Isotherm::from_csv_reader)"
     )]
     Duplicate {
         /// Which table.
@@ -168,14 +168,19 @@ pub enum TableError {
     /// The ranges of values of two isotherms do not overlap, so that no shift aligns them: measure at a temperature in
     /// between, or shift by a law ([`MasterCurve::with_law`](crate::rheology::MasterCurve::with_law)).
     #[error(
-        "the isotherms at {} K and {} K do not overlap in their values: at the best shift they differ by {:.0} %; \
-        measure at a temperature in between, or use MasterCurve::with_law",
-        .temperatures[0], .temperatures[1], 100.0 * .apart
+        "the isotherms at {} K and {} K do not overlap in their values: at the best shift they differ by {:.0} %, and \
+        where they overlap by {:.1} decades by {:.0} %; measure at a temperature in between, or use \
+        MasterCurve::with_law",
+        .temperatures[0], .temperatures[1], 100.0 * .apart, .overlap, 100.0 * .there
     )]
     NoOverlap {
         /// The temperatures \[K\].
         temperatures: [f64; 2],
         /// Root mean square of the logarithmic distance at the best shift.
         apart: f64,
+        /// Decades of the widest overlap in which they are near each other.
+        overlap: f64,
+        /// Root mean square of the logarithmic distance there.
+        there: f64,
     },
 }

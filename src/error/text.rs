@@ -4,7 +4,8 @@
 pub enum TextError {
     /// A line has the wrong number of columns.
     #[error(
-        "line {line}: {found} columns separated by {delimiter}, but {expected} are needed ({columns}); TextFormat::with_delimiter states another delimiter"
+        "line {line}: {found} columns separated by {delimiter}, but {expected} are needed ({columns}); \
+        TextFormat::with_delimiter states another delimiter; if another table begins here, split the file"
     )]
     Columns {
         /// The line, from 1.
@@ -68,10 +69,12 @@ pub enum TextError {
         found: String,
     },
 
-    /// A heading has no unit of the quantity of its column, or one of two meanings.
+    /// A heading has no unit of the quantity of its column, or one of two meanings: beside a factor, by which values
+    /// may be multiplied or divided, after words that may change it, or of logarithms.
     #[error(
         "line {line}, column {column}: the heading {heading:?} has no unit of the {quantity}, or an ambiguous \
-        one; write it in brackets, as in '[{example}]', or state it (TextTable::with_heading, Units)"
+        one; write it in brackets, as in '[{example}]' or '[10^3 {example}]', or state it \
+        (TextTable::with_heading, Units)"
     )]
     Unit {
         /// The line of the headings, from 1.
@@ -96,6 +99,27 @@ pub enum TextError {
         line: u64,
         /// The line of the headings.
         headings: u64,
+    },
+
+    /// The headings of a table are repeated with other units, so that its sections cannot be joined.
+    #[error(
+        "line {line} repeats the headings of line {headings}, but with other units below them: write both in the same \
+        units, or split the file"
+    )]
+    Section {
+        /// The line of the headings of the section, from 1.
+        line: u64,
+        /// The line of the headings of the table.
+        headings: u64,
+    },
+
+    /// A section that was asked for is not in the table.
+    #[error("there is no section {section}: give one from 1 to {sections}")]
+    NoSection {
+        /// Its number.
+        section: usize,
+        /// The number of sections.
+        sections: usize,
     },
 
     /// A column that was asked for is not in the table.

@@ -104,6 +104,7 @@ impl fmt::Display for TakenColumn {
                 write!(f, ", 1 {text} = {:e} {}", sizes[0], self.quantity.si())
             }
             UnitOf::Other(_) => f.write_str(", of another unit"),
+            UnitOf::Unclear(_) => f.write_str(", of an ambiguous unit"),
             UnitOf::Sizes(_, sizes) if sizes.len() > 1 => f.write_str(", of a unit with two meanings"),
             _ => write!(f, " in {}", self.quantity.si()),
         }
@@ -142,7 +143,7 @@ impl TextTable {
         } else {
             self.headings.iter().map(String::as_str).collect()
         };
-        let names = names.join(", ");
+        let names = shortened(&names.join(", "));
         let row = |mut row: TextRow<'_>| {
             row.drop_empty(width);
             row.check_width(width, &names)?;
@@ -187,7 +188,7 @@ impl TextTable {
         };
         let candidates = [
             named(&has_unit),
-            named(&|column| column.unit_of == UnitOf::Unnamed),
+            named(&|column| matches!(column.unit_of, UnitOf::Unnamed | UnitOf::Unclear(_))),
             columns.iter().filter(|column| wanted.by_unit && is_by_unit(column)).cloned().collect(),
             named(&|_| true),
         ];
@@ -205,19 +206,25 @@ impl TextTable {
         Ok(candidates.into_iter().min_by(|a, b| distance(a).total_cmp(&distance(b))))
     }
 
+    /// Whether two columns have the same values, in the rows where both have some.
     fn are_equal(&self, one: &TakenColumn, other: &TakenColumn) -> bool {
         let (Ok(a), Ok(b)) = (one.unit(), other.unit()) else { return false };
-        let Ok(rows) = self.rows(&[one.clone(), other.clone()]) else { return false };
-        !rows.is_empty()
-            && rows.iter().all(|row| {
-                let [x, y] = [a * row.values[0], b * row.values[1]];
-                (x - y).abs() <= EQUAL * x.abs().max(y.abs())
-            })
+        let numbers = |row: TextRow<'_>| {
+            let number = |column: usize| row.fields.get(column).and_then(|_| row.number(column).ok());
+            Some([a * number(one.index)?, b * number(other.index)?])
+        };
+        let is_equal = |[x, y]: [f64; 2]| (x - y).abs() <= EQUAL * x.abs().max(y.abs());
+        let mut rows = self.data().filter_map(numbers).peekable();
+        rows.peek().is_some() && rows.all(is_equal)
     }
 
     /// The error of a column that no heading names, or that `several` columns may be.
     pub fn missing(&self, wanted: &WantedColumn, several: &str) -> TextError {
-        let found = if self.headings.is_empty() { "none".into() } else { shortened(&self.headings.join(", ")) };
+        let found = if self.headings.is_empty() {
+            "none".into()
+        } else {
+            shortened(&self.headings.join(", ")) + &self.looks_like()
+        };
         let several = if several.is_empty() { String::new() } else { format!(": {several}") };
         TextError::Heading { line: self.line, column: wanted.name, words: wanted.words.join(", "), several, found }
     }

@@ -7,7 +7,8 @@ use super::encoding::decoded;
 use super::format::{Delimiter, TextFormat};
 use crate::error::{Error, FileError, Result, TextError};
 
-/// Most rows, and most fields, from which delimiter and decimal mark are found out.
+/// Most rows at the beginning and at the end of a text, and most fields, from which delimiter and decimal mark are
+/// found out: the beginning may be a long preamble.
 const ROWS: usize = 200;
 const FIELDS: usize = 10_000;
 /// Of delimiters that make nearly as many numbers as the best, the first is taken.
@@ -82,7 +83,8 @@ impl Text {
         let (mut score, mut unclear, mut seen) = (0.0, dialect.decimal_comma && unstated, 0);
         // commas do both only where numbers are quoted
         let mut both = dialect.decimal_comma && dialect.delimiter == Delimiter::Comma;
-        for row in self.rows_in(dialect).take(ROWS).take_while(|row| {
+        let end = TextRows { rest: self.end(), line: 1, dialect }.take(ROWS);
+        for row in self.rows_in(dialect).take(ROWS).chain(end).take_while(|row| {
             seen += row.fields.len();
             seen <= FIELDS + row.fields.len()
         }) {
@@ -99,6 +101,20 @@ impl Text {
             }
         }
         if unclear || both { 0.0 } else { score }
+    }
+
+    /// The last lines of a text of many.
+    fn end(&self) -> &str {
+        let mut ends = self.text.rmatch_indices('\n').map(|(at, _)| at + 1);
+        match ends.nth(ROWS) {
+            Some(at) if ends.nth(ROWS).is_some() => &self.text[at..],
+            _ => "",
+        }
+    }
+
+    /// The lines from `line` on, and their numbers.
+    pub(super) fn lines_from(&self, line: u64) -> impl Iterator<Item = (u64, &str)> {
+        (self.line..).zip(self.text.lines()).skip_while(move |(number, _)| *number < line)
     }
 
     /// The lines that are neither empty nor comments.
@@ -248,6 +264,11 @@ impl TextRow<'_> {
     /// Number of fields that are numbers.
     pub(crate) fn numbers(&self) -> usize {
         (0..self.fields.len()).filter(|&column| self.is_number(column)).count()
+    }
+
+    /// Whether it has delimiters alone.
+    pub(super) fn is_empty(&self) -> bool {
+        self.fields.iter().all(|field| field.is_empty())
     }
 
     /// Drops empty fields beyond `width`, left by delimiters at the end of a line.

@@ -8,6 +8,7 @@ mod encoding;
 mod format;
 mod heading;
 mod lines;
+mod sections;
 mod table;
 mod unit;
 

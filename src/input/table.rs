@@ -6,21 +6,23 @@ use std::path::Path;
 
 use super::format::{Delimiter, TextFormat};
 use super::lines::{Text, TextRow, shortened};
+use super::sections::{are_units, bare, gaps};
 use super::unit::readings;
 use crate::error::{Result, TextError};
 
-/// Rows among which the first row of numbers is looked for.
+/// Rows among which the first row of numbers is looked for, before eight times as many are read.
 const SEARCHED: usize = 1000;
 /// Rows in which the same two columns have numbers: a table has begun.
 const ROWS_OF_NUMBERS: usize = 3;
-
 /// A table in a text file, as it was understood: print it to see how.
 ///
 /// The table begins with the first rows that have numbers in the same two columns. The row above them has the
-/// headings, if none of its fields is a number; a row of units may stand between the two. All rows from there on
-/// belong to the table. Lines before the headings are not read. Without a row of headings, the last comment before
-/// the numbers may have them, one for each column, as NumPy writes them; or comments that begin with `columns:` and
-/// `units:`.
+/// headings, if none of its fields is a number; a row of units may stand between the two: short words, of which one at
+/// least is a unit that is known. All rows from there on belong to the table; where its headings and units are
+/// repeated, as in files of several steps or intervals, a section begins that is joined to it
+/// ([`TextTable::section`] takes one alone). Lines before the headings are not read. Without a row of headings, the
+/// last comment before the numbers may have them, one for each column, as NumPy writes them; or comments that begin
+/// with `columns:` and `units:`.
 ///
 /// ```
 /// use viscocontact::rheology::{Experiment, Measurements, Units};
@@ -44,8 +46,11 @@ pub struct TextTable {
     pub(super) headings: Vec<String>,
     /// The line of the headings, or of the first row of numbers.
     pub(super) line: u64,
-    /// The line of the first row of numbers.
+    /// The lines of the first row of numbers, and after the last.
     first: u64,
+    end: u64,
+    /// First and last lines between two sections.
+    gaps: Vec<[u64; 2]>,
     /// Whether the headings are a comment, which may say something else.
     commented: bool,
 }
@@ -73,9 +78,7 @@ impl TextTable {
 
     pub(crate) fn named(reader: impl Read, name: &str, format: TextFormat) -> Result<TextTable> {
         let text = Text::read(reader, name, format)?;
-        let mut rows: Vec<TextRow> = text.rows().take(SEARCHED).collect();
-        rows.iter_mut().for_each(|row| row.drop_empty(1));
-        let start = first_of_numbers(&rows);
+        let (rows, start) = beginning(&text);
         let (above, from) = rows.split_at(start);
         let width = from.first().map_or(0, |row| row.fields.len());
         let above_all = above.len().saturating_sub(2);
@@ -94,6 +97,10 @@ impl TextTable {
             );
         }
         let first = from.first().map_or(u64::MAX, |row| row.line);
+        let gaps = match (names, from.first()) {
+            (Some(names), Some(first)) => gaps(&text, names, units, first)?,
+            _ => Vec::new(),
+        };
         let mut commented = false;
         let (headings, line) = match names {
             Some(names) => (with_units(merged(names, width), units.map(|row| merged(row, width))), names.line),
@@ -116,7 +123,7 @@ impl TextTable {
                 (with_units(names, units), line)
             }
         };
-        Ok(TextTable { headings, line, first, commented, text })
+        Ok(TextTable { headings, line, first, end: u64::MAX, gaps, commented, text })
     }
 
     /// The headings, with units of a row of their own in brackets; none, if there is no row of headings.
@@ -168,34 +175,73 @@ impl TextTable {
         Ok(self)
     }
 
+    /// The same with one section alone, from 1: one step or interval of an instrument, of those with the same headings.
+    ///
+    /// # Errors
+    /// If there is no such section ([`TextError::NoSection`]).
+    pub fn section(mut self, number: usize) -> Result<TextTable> {
+        let sections = self.gaps.len() + 1;
+        if !(1..=sections).contains(&number) {
+            return Err(TextError::NoSection { section: number, sections }.into());
+        }
+        let (before, after) = (number.checked_sub(2).map(|k| self.gaps[k]), self.gaps.get(number - 1));
+        self.end = after.map_or(self.end, |gap| gap[0]);
+        self.first = before.map_or(self.first, |gap| gap[1] + 1);
+        self.gaps.clear();
+        Ok(self)
+    }
+
     /// The rows of the table.
     pub(super) fn data(&self) -> impl Iterator<Item = TextRow<'_>> {
-        let is_row = |row: &TextRow| row.line >= self.first && row.fields.iter().any(|field| !field.is_empty());
+        let mut gaps = self.gaps.iter().peekable();
+        let is_row = move |row: &TextRow| {
+            while gaps.next_if(|gap| gap[1] < row.line).is_some() {}
+            let is_between = gaps.peek().is_some_and(|gap| gap[0] <= row.line);
+            (self.first..self.end).contains(&row.line) && !is_between && !row.is_empty()
+        };
         self.text.rows().filter(is_row)
+    }
+
+    /// What the headings look like, if this explains that a column was not found.
+    pub(super) fn looks_like(&self) -> String {
+        match self.headings.iter().filter(|heading| !readings(heading).is_empty()).count() {
+            0 => String::new(),
+            _ => format!("; line {} looks like units", self.line),
+        }
     }
 }
 
-/// Index of the first row of numbers.
-fn first_of_numbers(rows: &[TextRow]) -> usize {
+/// The rows up to the first of numbers and some more, and its index.
+fn beginning(text: &Text) -> (Vec<TextRow<'_>>, usize) {
+    let mut searched = SEARCHED;
+    loop {
+        let mut rows: Vec<TextRow> = text.rows().filter(|row| !row.is_empty()).take(searched).collect();
+        rows.iter_mut().for_each(|row| row.drop_empty(1));
+        if let Some(start) = first_of_numbers(&rows, rows.len() < searched) {
+            return (rows, start);
+        }
+        searched *= 8;
+    }
+}
+
+/// Index of the first row of numbers, if it is among these rows or they are all.
+fn first_of_numbers(rows: &[TextRow], are_all: bool) -> Option<usize> {
     let begins = |from: usize| {
         let next = &rows[from..rows.len().min(from + ROWS_OF_NUMBERS)];
-        (0..rows[from].fields.len()).filter(|&column| next.iter().all(|row| row.is_number(column))).count() > 1
+        let is_column = |&column: &usize| next.iter().all(|row| row.is_number(column));
+        (are_all || next.len() == ROWS_OF_NUMBERS)
+            && (0..rows[from].fields.len()).filter(is_column).count() > 1
+            && !are_units(&rows[from])
     };
-    let numbers = |row: &TextRow| row.numbers() > 0;
-    let found = (0..rows.len()).find(|&from| begins(from)).or_else(|| rows.iter().position(numbers));
+    let numbers = |row: &TextRow| row.numbers() > 0 && !are_units(row);
+    let found = (0..rows.len()).find(|&from| begins(from));
+    let found = found.or_else(|| rows.iter().position(numbers).filter(|_| are_all));
     // a row with a number just before is one of the table, with a fault
-    let Some(mut start) = found else { return rows.len().min(1) };
+    let Some(mut start) = found else { return are_all.then(|| rows.len().min(1)) };
     while start > 0 && numbers(&rows[start - 1]) {
         start -= 1;
     }
-    start
-}
-
-/// Whether the fields of a row are units, as far as they are not empty.
-fn are_units(row: &TextRow) -> bool {
-    let is_unit = |field: &str| !readings(field).is_empty();
-    row.fields.iter().all(|field| ["", "-", "%", "1"].contains(&&**field) || is_unit(field))
-        && row.fields.iter().any(|field| is_unit(field))
+    Some(start)
 }
 
 /// The fields of a row; units in brackets belong to the field before them, if blanks have torn them off.
@@ -213,8 +259,9 @@ fn merged(row: &TextRow, width: usize) -> Vec<String> {
 
 fn with_units(mut names: Vec<String>, units: Option<Vec<String>>) -> Vec<String> {
     for (name, unit) in names.iter_mut().zip(units.into_iter().flatten()) {
-        if !["", "-"].contains(&unit.as_str()) {
-            *name += &format!(" [{}]", unit.trim_matches(['[', ']', '(', ')']));
+        let unit = bare(&unit);
+        if !["", "-"].contains(&unit) {
+            *name += &format!(" [{unit}]");
         }
     }
     names
@@ -230,6 +277,15 @@ impl fmt::Display for TextTable {
             dialect.delimiter.marks().1,
             self.text.encoding
         )?;
+        if !self.gaps.is_empty() {
+            let again: Vec<String> = self.gaps.iter().map(|gap| gap[0].to_string()).collect();
+            write!(
+                f,
+                ", {} sections with the same headings joined (new ones from lines {})",
+                again.len() + 1,
+                again.join(", ")
+            )?;
+        }
         if self.headings.is_empty() {
             return write!(f, ", without headings");
         }

@@ -1,5 +1,7 @@
 //! Units in the notations of headings.
 
+use std::borrow::Cow;
+
 /// The quantity of a unit: powers of second, newton, metre, radian and kelvin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Quantity([i32; 5]);
@@ -59,13 +61,13 @@ const UNITS: [(&[&str], Quantity, f64, bool); 20] = [
     (&["week", "weeks"], Q::TIME, 604_800.0, false),
     (&["year", "years"], Q::TIME, 31_557_600.0, false),
     (&["Hz", "hertz"], Q::FREQUENCY, TAU, true),
-    (&["Pa", "pascal"], Q::MODULUS, 1.0, true),
+    (&["Pa", "pascal", "pascals"], Q::MODULUS, 1.0, true),
     (&["bar"], Q::MODULUS, 1e5, true),
     (&["psi"], Q::MODULUS, 6894.757, false),
     (&["ksi"], Q::MODULUS, 6_894_757.0, false),
-    (&["N"], Q::FORCE, 1.0, true),
+    (&["N", "newton", "newtons"], Q::FORCE, 1.0, true),
     (&["dyn", "dyne"], Q::FORCE, 1e-5, false),
-    (&["m"], Q::LENGTH, 1.0, true),
+    (&["m", "metre", "metres", "meter", "meters"], Q::LENGTH, 1.0, true),
     (&["micron", "microns"], Q::LENGTH, 1e-6, false),
     // letter, ångström sign, and the ASCII substitute
     (&["Å", "\u{212b}", "A"], Q::LENGTH, 1e-10, false),
@@ -76,6 +78,21 @@ const UNITS: [(&[&str], Quantity, f64, bool); 20] = [
 ];
 const PREFIXES: [&str; 11] = ["", "k", "M", "G", "T", "c", "m", "µ", "u", "n", "p"];
 const FACTORS: [f64; 11] = [1.0, 1e3, 1e6, 1e9, 1e12, 1e-2, 1e-3, 1e-6, 1e-6, 1e-9, 1e-12];
+/// Names of prefixes, in lower case, and their symbols.
+const NAMED_PREFIXES: [(&str, &str); 12] = [
+    ("tera", "T"),
+    ("giga", "G"),
+    ("mega", "M"),
+    ("kilo", "k"),
+    ("hecto", "h"),
+    ("centi", "c"),
+    ("milli", "m"),
+    ("micro", "µ"),
+    ("mikro", "µ"),
+    ("nano", "n"),
+    ("pico", "p"),
+    ("femto", "f"),
+];
 
 /// Every unit with every prefix: the prefix, its names without the prefix, and the unit.
 fn prefixed() -> impl Iterator<Item = (&'static str, &'static [&'static str], Unit)> {
@@ -99,9 +116,26 @@ pub(crate) fn name(quantity: Quantity, size: f64) -> String {
     found.unwrap_or_else(|| format!("{size:e} {}", quantity.si()))
 }
 
-/// Whether a word is a prefix of units: what follows is not the whole unit.
-pub(crate) fn is_prefix(word: &str) -> bool {
+/// Whether a word is the symbol of a prefix: what follows is not the whole unit.
+pub(super) fn is_prefix(word: &str) -> bool {
     !word.is_empty() && PREFIXES.contains(&word)
+}
+
+/// Whether a word is the name of a prefix.
+pub(super) fn is_prefix_name(word: &str) -> bool {
+    NAMED_PREFIXES.iter().any(|(name, _)| word.eq_ignore_ascii_case(name))
+}
+
+/// A word with the symbol of a prefix in place of its name: of `micro-N`, `micro_N`, `microN` and `micronewton`, but
+/// not of microns.
+fn with_symbol(word: &str) -> Option<String> {
+    NAMED_PREFIXES.iter().find_map(|(name, symbol)| {
+        let (head, rest) = word.split_at_checked(name.len()).filter(|(head, _)| head.eq_ignore_ascii_case(name))?;
+        let unit = rest.trim_start_matches(['-', '_']);
+        let is_symbol = rest.starts_with(char::is_uppercase) && head.ends_with(char::is_lowercase);
+        let is_name = rest.len() > 2;
+        (unit.len() < rest.len() || is_symbol || is_name).then(|| format!("{symbol}{unit}"))
+    })
 }
 
 /// Whether two sizes are equal: 2π may be given with few digits.
@@ -109,7 +143,8 @@ pub(crate) fn same(one: f64, other: f64) -> bool {
     (one / other - 1.0).abs() < 1e-2
 }
 
-/// The possible meanings of a text as a unit, empty if none: `1/s` is an angular frequency or another notation of Hz.
+/// The possible meanings of the whole of a text as a unit, empty if none: `1/s` is an angular frequency or another
+/// notation of Hz. A power of ten stands before the units that it multiplies.
 pub(crate) fn readings(text: &str) -> Vec<Unit> {
     let text = plain(text);
     // of J / (10⁻⁶/Pa), the first slash is no part of the unit
@@ -118,15 +153,21 @@ pub(crate) fn readings(text: &str) -> Vec<Unit> {
     }
     let mut products = vec![(Q::NUMBER, 1.0)];
     for (k, part) in text.split('/').enumerate() {
-        let mut factors: Vec<&str> = part.split([' ', '·', '*', '×']).filter(|factor| !factor.is_empty()).collect();
+        let Some(mut factors) = factors(part) else { return Vec::new() };
         if k == 0 && text.contains('/') {
             // of 10^-9 1/Pa
-            factors.pop_if(|factor| *factor == "1");
+            factors.pop_if(|factor| factor == "1");
         } else if factors.is_empty() {
             return Vec::new();
         }
         let sign = if k == 0 { 1 } else { -1 };
-        for powers in factors.into_iter().map(|factor| powers(factor, sign)) {
+        for (place, factor) in factors.iter().enumerate() {
+            let powers = powers(factor, sign);
+            // of N*1e6 and Pa/10^3, the factor has two meanings
+            let is_misplaced = place > 0 || sign < 0 && factors.len() == 1;
+            if is_misplaced && powers.iter().any(|power| power.0 == Q::NUMBER) {
+                return Vec::new();
+            }
             let times = |(quantity, size): Unit| {
                 powers
                     .iter()
@@ -142,10 +183,31 @@ pub(crate) fn readings(text: &str) -> Vec<Unit> {
     angular.chain(rates).filter(|unit| NAMED.iter().any(|(quantity, _)| *quantity == unit.0)).collect()
 }
 
+/// The factors of a product, with the name of a prefix joined to its unit; none, if a mark lacks a factor on a side.
+fn factors(product: &str) -> Option<Vec<String>> {
+    let mut factors: Vec<String> = Vec::new();
+    if product.trim().is_empty() {
+        return Some(factors);
+    }
+    for marked in product.split(['·', '*', '×']) {
+        let before = factors.len();
+        for word in marked.split_whitespace() {
+            match factors.last_mut().filter(|last| is_prefix_name(last.trim_end_matches(['-', '_']))) {
+                Some(prefix) => *prefix += &format!("_{word}"),
+                None => factors.push(word.to_owned()),
+            }
+        }
+        if factors.len() == before {
+            return None;
+        }
+    }
+    Some(factors)
+}
+
 /// The text with blanks in place of brackets, and powers as in 10^-9 Pa^-1 for 10⁻⁹ Pa⁻¹ and 10^{-9} Pa^{-1}.
 fn plain(text: &str) -> String {
     let mut plain = String::new();
-    for c in text.trim().trim_end_matches('.').chars().filter(|c| !"{}".contains(*c)) {
+    for c in text.replace("**", "^").trim().trim_end_matches('.').chars().filter(|c| !"{}".contains(*c)) {
         let raised = "⁰¹²³⁴⁵⁶⁷⁸⁹⁻".chars().zip("0123456789-".chars()).find(|(raised, _)| *raised == c);
         if raised.is_some() && !plain.ends_with(['-', '^']) {
             plain.push('^');
@@ -166,6 +228,7 @@ fn powers(factor: &str, sign: i32) -> Vec<Unit> {
     if let Some(power) = ["10^", "1e", "1E"].iter().find_map(|ten| factor.strip_prefix(ten)) {
         return exponent(power).map(|power| (Q::NUMBER, 10_f64.powi(sign * power))).into_iter().collect();
     }
+    let factor = with_symbol(factor).map_or(Cow::Borrowed(factor), Cow::Owned);
     let end = factor.find(|c: char| c == '^' || c == '-' || c.is_ascii_digit()).unwrap_or(factor.len());
     let (name, power) = factor.split_at(end);
     let power = if power.is_empty() { Some(1) } else { exponent(power.trim_start_matches('^')) };

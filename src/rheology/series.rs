@@ -65,8 +65,12 @@ impl CreepSeries {
 
         let glassy = checked(rheology, 0.0, 0.0)?;
         let samples = sampled(rheology, [first, last], FITTED, glassy)?;
-        let search =
-            Search { constant: (glassy > 0.0).then_some(glassy), slope: true, times: [first / BEYOND, last * BEYOND] };
+        let search = Search {
+            constant: (glassy > 0.0).then_some(glassy),
+            slope: true,
+            times: [first / BEYOND, last * BEYOND],
+            hidden: f64::INFINITY,
+        };
         let series = search.within(&samples, FITTED_SHARE * tolerance);
         let report = FitReport::new(&series, &sampled(rheology, [first, last], CHECKED, glassy)?);
         if let Some(worst) = report.worst().filter(|worst| worst.misfit().abs() > tolerance) {

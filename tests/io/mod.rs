@@ -6,6 +6,7 @@ mod clauses;
 mod diagnosis;
 mod documents;
 mod errors;
+mod headings;
 mod house;
 mod interface;
 mod invalid_loads;

@@ -3,9 +3,12 @@
 mod bodies;
 mod intervals;
 mod measured;
+mod one_bad_row;
 mod refusals;
+mod repeats;
 mod sparse_tables;
 mod spectra;
+mod superposed;
 mod tension;
 mod vertical;
 

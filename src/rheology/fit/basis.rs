@@ -73,6 +73,11 @@ pub(crate) struct Sample {
     pub(crate) weight: f64,
 }
 
+/// The time at which the strength of a term is seen: that of the first modulus of relaxation, 0 otherwise.
+pub(super) fn first_time(samples: &[Sample]) -> f64 {
+    if samples[0].function == MaterialFunction::Relaxation { samples[0].x } else { 0.0 }
+}
+
 /// An exponential series under construction.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct FittedSeries {
@@ -83,11 +88,40 @@ pub(crate) struct FittedSeries {
 }
 
 impl FittedSeries {
+    /// Number of its strengths that are not zero: each is a parameter of non-negative least squares (Meyer & Woodroofe,
+    /// Ann. Statist. 28, 2000).
+    pub(in crate::rheology) fn parameters(&self) -> usize {
+        self.ends() + self.terms.len()
+    }
+
+    /// Number of non-zero ends, constant and slope.
+    pub(in crate::rheology) fn ends(&self) -> usize {
+        usize::from(self.constant > 0.0) + usize::from(self.slope > 0.0)
+    }
+
     pub(crate) fn value(&self, function: MaterialFunction, x: f64) -> f64 {
         let terms: f64 = self.terms.iter().map(|&(c, lambda)| c * function.term(x, lambda).0).sum();
         // a zero slope contributes zero even where its function is infinite (0 · ∞ is NaN)
         let slope = if self.slope > 0.0 { self.slope * function.slope(x) } else { 0.0 };
         self.constant * function.constant() + slope + terms
+    }
+
+    /// Slows terms of relaxation that have decayed before the first sample, until the modulus of none at t = 0 is more
+    /// than `hidden` times the first sample: no sample bounds it, and the viscosity of such a term would stop the
+    /// creep.
+    pub(super) fn bound(&mut self, samples: &[Sample], hidden: f64) {
+        let (first, most) = (first_time(samples), hidden * samples[0].value);
+        if first == 0.0 {
+            return;
+        }
+        for (strength, time) in &mut self.terms {
+            if *strength > most {
+                // the modulus at the first sample stays
+                let left = strength.ln() - first / *time;
+                *time = first / (most.ln() - left);
+                *strength = most;
+            }
+        }
     }
 
     /// fitted/value − 1.

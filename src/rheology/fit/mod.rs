@@ -16,6 +16,7 @@ mod report;
 use crate::numeric::non_negative_least_squares;
 
 pub use basis::MaterialFunction;
+use basis::first_time;
 pub(crate) use basis::{FittedSeries, Sample};
 pub use report::{FitReport, FitSample, FitWarning};
 pub(in crate::rheology) use report::{KNOWN, MOST_MISFIT};
@@ -31,6 +32,8 @@ pub(crate) struct Search {
     pub(crate) slope: bool,
     /// Shortest and longest time of a term.
     pub(crate) times: [f64; 2],
+    /// The largest modulus of a term at t = 0 over the first modulus of relaxation, if that is measured later.
+    pub(crate) hidden: f64,
 }
 
 /// Times per decade tried for a function: the error of the trapezoidal rule in ln λ is about e^(−π²/h), so that two or
@@ -66,7 +69,9 @@ impl Search {
 
     /// Non-negative least squares with `density` times per decade.
     pub(in crate::rheology) fn on_grid(&self, samples: &[Sample], density: f64) -> FittedSeries {
-        self.least_squares(samples, self.grid(density), |_| 1.0, 0.0)
+        let mut series = self.least_squares(samples, self.grid(density), |_| 1.0, 0.0);
+        series.bound(samples, self.hidden);
+        series
     }
 
     /// Non-negative least squares of the misfit with terms at `times`, and of `smoothing` times the squared second

@@ -1,13 +1,10 @@
 //! Optimises strengths and times of a series together, by least squares of the misfit.
 
-use super::{FittedSeries, MaterialFunction, Sample, Search};
+use super::{FittedSeries, Sample, Search, first_time};
 use crate::dense::Matrix;
 
 /// Greatest change of the logarithm of a parameter in one iteration.
 const MAX_CHANGE: f64 = 1.5;
-
-/// Ratio of the first sample's time to the relaxation time of a term that has fully decayed at that sample.
-const DECAYED: f64 = 30.0;
 
 /// Levenberg–Marquardt in the logarithms of strengths and times, which keeps both positive. The strength of a term of
 /// relaxation is its modulus at the first sample: the modulus at t = 0 changes by orders of magnitude with the time.
@@ -30,7 +27,8 @@ pub(in crate::rheology) fn polish(
         let mut improved = None;
         for _ in 0..6 {
             let step = damped_step(&jacobian, &misfits, damping);
-            let trial = moved(&best, search, &step, first_time(samples));
+            let mut trial = moved(&best, search, &step, first_time(samples));
+            trial.bound(samples, search.hidden);
             let trial_squares = trial.squares(samples);
             if trial_squares < squares {
                 improved = Some((trial, trial_squares));
@@ -99,11 +97,6 @@ fn damped_step(jacobian: &Matrix, misfits: &[f64], damping: f64) -> Vec<f64> {
     matrix.least_squares(&right)
 }
 
-/// The time at which the strength of a term is taken.
-fn first_time(samples: &[Sample]) -> f64 {
-    if samples[0].function == MaterialFunction::Relaxation { samples[0].x } else { 0.0 }
-}
-
 fn moved(series: &FittedSeries, search: &Search, step: &[f64], first: f64) -> FittedSeries {
     let mut step = step.iter().map(|d| d.clamp(-MAX_CHANGE, MAX_CHANGE).exp());
     let mut next = || step.next().unwrap_or(1.0);
@@ -117,7 +110,7 @@ fn moved(series: &FittedSeries, search: &Search, step: &[f64], first: f64) -> Fi
     }
     for (strength, lambda) in &mut moved.terms {
         let (grown, before) = (next(), *lambda);
-        *lambda = (before * next()).max(first / DECAYED);
+        *lambda = before * next();
         *strength *= grown * (first / *lambda - first / before).exp();
     }
     moved

@@ -27,6 +27,8 @@ impl FitSample {
 
 /// Greatest root mean square misfit of the nearest series to measurements that are accepted.
 pub(crate) const MOST_MISFIT: f64 = 0.1;
+/// Creep that is more uncertain than this, within a factor of eleven, is unknown: the number would say nothing.
+const UNKNOWN: f64 = 10.0;
 /// Creep that is less uncertain than this is known.
 pub(in crate::rheology) const KNOWN: f64 = 0.05;
 
@@ -49,6 +51,14 @@ pub enum FitWarning {
         /// The creep is uncertain by more than 5 % until this time \[s\].
         until: f64,
     },
+    /// A sample contradicts the others, and was left out of the fit or counts little: check it. The first row of a
+    /// relaxation is often off, where the strain rings or takes its time. Contacts do not warn.
+    Outlier {
+        /// Its time \[s\] or angular frequency \[rad/s\].
+        x: f64,
+        /// Its relative deviation from the curve of the others.
+        deviation: f64,
+    },
     /// No series fits the samples within their scatter: the body is not linear, it ages, or the specimen slipped.
     Systematic {
         /// [`FitReport::rms_misfit`].
@@ -68,6 +78,14 @@ impl fmt::Display for FitWarning {
                     "what relaxed before {first:.3e} s is not in the table, so that its creep is uncertain by more than \
                      {:.0} % until {until:.3e} s: add the modulus at t = 0, or measure earlier",
                     100.0 * KNOWN
+                );
+            }
+            FitWarning::Outlier { x, deviation } => {
+                return write!(
+                    f,
+                    "the sample at {x:.3e} is {:.1} % off the curve of the others, and counts little or not at all: \
+                     check it",
+                    100.0 * deviation
                 );
             }
             FitWarning::Systematic { rms } => {
@@ -94,6 +112,7 @@ impl fmt::Display for FitWarning {
 pub struct FitReport {
     pub(in crate::rheology) samples: Vec<FitSample>,
     pub(in crate::rheology) terms: usize,
+    pub(in crate::rheology) averaged: usize,
     pub(in crate::rheology) wrong_way: f64,
     pub(in crate::rheology) interval: Vec<(f64, f64)>,
     pub(in crate::rheology) warning: Option<FitWarning>,
@@ -101,8 +120,8 @@ pub struct FitReport {
 
 debug_by! {
     self: FitReport =>
-    samples: Counted(&self.samples), terms: self.terms, wrong_way: self.wrong_way, interval: Counted(&self.interval),
-    warning: self.warning
+    samples: Counted(&self.samples), terms: self.terms, averaged: self.averaged, wrong_way: self.wrong_way,
+    interval: Counted(&self.interval), warning: self.warning
 }
 
 impl FitReport {
@@ -119,7 +138,7 @@ impl FitReport {
 
     /// The report of an exact series.
     pub(crate) fn exact(terms: usize) -> FitReport {
-        FitReport { samples: Vec::new(), terms, wrong_way: 0.0, interval: Vec::new(), warning: None }
+        FitReport { samples: Vec::new(), terms, averaged: 0, wrong_way: 0.0, interval: Vec::new(), warning: None }
     }
 
     /// Whether the series is exact and nothing was fitted.
@@ -154,6 +173,11 @@ impl FitReport {
         let positive = || self.samples.iter().map(|sample| sample.x).filter(|x| *x > 0.0);
         let least = positive().fold(f64::INFINITY, f64::min);
         (least < f64::INFINITY).then(|| [least, positive().fold(0.0, f64::max)])
+    }
+
+    /// Number of rows at the time or frequency of the row before them, which were averaged with it.
+    pub fn averaged(&self) -> usize {
+        self.averaged
     }
 
     /// Greatest relative deviation of the data from the nearest monotone curve, taken as noise. 0 for monotone data.
@@ -207,11 +231,17 @@ impl fmt::Display for FitReport {
         if rms > MOST_MISFIT {
             f.write_str("; the series that is nearest to the samples, less smooth than this one, is within the limit")?;
         }
+        if self.averaged > 0 {
+            write!(f, "; {} rows at the time or frequency of the row before averaged with it", self.averaged)?;
+        }
         if self.wrong_way > 0.0 {
             write!(f, "; the data deviate from a monotone curve by at most {:.1e}, taken as noise", self.wrong_way)?;
         }
         if self.uncertainty() > 0.0 {
-            write!(f, "; creep uncertain by {:.1} % at most", 100.0 * self.uncertainty())?;
+            match self.uncertainty() {
+                uncertainty if uncertainty > UNKNOWN => write!(f, "; creep unknown at some times")?,
+                uncertainty => write!(f, "; creep uncertain by {:.1} % at most", 100.0 * uncertainty)?,
+            }
             let known: Vec<(f64, bool)> = self.uncertainties().map(|(time, by)| (time, by <= KNOWN)).collect();
             let longest = known.chunk_by(|a, b| a.1 == b.1).filter(|part| part[0].1).max_by_key(|part| part.len());
             if let Some([first, .., last]) = longest.filter(|part| part.len() < known.len()) {

@@ -1,7 +1,7 @@
 //! Checks of measured data before a fit.
 
 use crate::error::{Place, Result, TableError, least_length};
-use crate::rheology::fit::{MaterialFunction, Sample};
+use crate::rheology::fit::{FitWarning, MaterialFunction, Sample};
 
 /// One row of a table: its place, the abscissa, and one value for each column.
 #[derive(Debug, Clone, PartialEq)]
@@ -9,6 +9,37 @@ pub(crate) struct TableRow {
     pub(crate) place: Place,
     pub(crate) x: f64,
     pub(crate) values: Vec<f64>,
+    /// Number of measurements averaged in it.
+    pub(crate) count: f64,
+}
+
+impl TableRow {
+    pub(crate) fn new(place: Place, x: f64, values: Vec<f64>) -> TableRow {
+        TableRow { place, x, values, count: 1.0 }
+    }
+
+    /// Whether another measurement at the same abscissa agrees within what short tables may scatter.
+    fn agrees(&self, other: &TableRow) -> bool {
+        let mut ratios = self.values.iter().zip(&other.values).map(|(one, other)| other / one);
+        self.x == other.x && ratios.all(|ratio| (ratio - 1.0).abs() <= MOST_NOISE_OF_FEW)
+    }
+}
+
+/// Rows of which those at the abscissa of the row before them, as where times are printed with few digits, are averaged
+/// with it: two values at one time are two measurements. Values that contradict each other stay.
+pub(crate) fn averaged_repeats(rows: Vec<TableRow>) -> Vec<TableRow> {
+    let mut averaged: Vec<TableRow> = Vec::with_capacity(rows.len());
+    for row in rows {
+        match averaged.last_mut().filter(|mean| mean.agrees(&row)) {
+            Some(mean) => {
+                mean.count += row.count;
+                let share = row.count / mean.count;
+                mean.values.iter_mut().zip(&row.values).for_each(|(mean, value)| *mean += share * (value - *mean));
+            }
+            None => averaged.push(row),
+        }
+    }
+    averaged
 }
 
 /// What a table of measurements holds.
@@ -82,23 +113,25 @@ impl Experiment {
 }
 
 /// Data may deviate from a monotone curve by this many standard deviations of their scatter, ...
-const DEVIATIONS: f64 = 6.0;
+pub(super) const DEVIATIONS: f64 = 6.0;
 /// ... but by no more than this, relatively; ...
-const MOST_NOISE: f64 = 0.5;
+pub(super) const MOST_NOISE: f64 = 0.5;
 /// ... in short tables, whose scatter is hard to distinguish from their trend, by no more than this.
 const MOST_NOISE_OF_FEW: f64 = 0.1;
 const FEW: usize = 12;
+/// One row of so many moves the curve by a hundredth of its deviation: it may go the wrong way.
+const ROWS_PER_KNOCK: usize = 100;
 /// Rows before and after one, from which its scatter is judged.
 const AROUND: usize = 4;
 /// Data without noise may deviate by the rounding of their digits; those printed with few digits, by one in the last.
 const LEAST_NOISE: f64 = 1e-9;
 /// Number of values for a fit of constant, slope and one term.
-const LEAST_ROWS: usize = 4;
+pub(super) const LEAST_ROWS: usize = 4;
 
 /// Sorts the rows of a table. Returns its samples, in ascending order.
 pub(crate) fn validated(layout: Layout, rows: &mut [TableRow]) -> Result<Vec<Sample>> {
     let Layout { table, abscissa, columns, zero } = layout;
-    for TableRow { place, x, values } in &*rows {
+    for TableRow { place, x, values, .. } in &*rows {
         let check = |column, value, inside, allowed| {
             if inside { Ok(()) } else { Err(TableError::OutOfRange { table, place: *place, column, value, allowed }) }
         };
@@ -115,16 +148,16 @@ pub(crate) fn validated(layout: Layout, rows: &mut [TableRow]) -> Result<Vec<Sam
     }
     least_length(table, rows.len(), LEAST_ROWS)?;
     let sample = |index: usize, function| {
-        rows.iter().map(move |row| Sample { function, x: row.x, value: row.values[index], weight: 1.0 })
+        rows.iter().map(move |row| Sample { function, x: row.x, value: row.values[index], weight: row.count })
     };
     Ok(columns.iter().enumerate().flat_map(|(index, &(_, function))| sample(index, function)).collect())
 }
 
 /// The greatest deviation of sorted rows from a monotone curve: an error where it exceeds what the scatter of the
-/// rows around explains, or the relative `scatter`, if it is stated.
-pub(crate) fn wrong_way(layout: Layout, rows: &[TableRow], scatter: Option<f64>) -> Result<f64> {
+/// rows around explains, or the relative `scatter`, if it is stated; a warning, if one row of a hundred or fewer does.
+pub(crate) fn wrong_way(layout: Layout, rows: &[TableRow], scatter: Option<f64>) -> Result<(f64, Option<FitWarning>)> {
     let Layout { table, columns, .. } = layout;
-    let mut greatest: f64 = 0.0;
+    let (mut greatest, mut knock): (f64, _) = (0.0, None);
     for (index, &(column, function)) in columns.iter().enumerate() {
         let values: Vec<f64> = rows.iter().map(|row| row.values[index]).collect();
         let rising = match function {
@@ -138,18 +171,27 @@ pub(crate) fn wrong_way(layout: Layout, rows: &[TableRow], scatter: Option<f64>)
             Some(scatter) => DEVIATIONS * scatter,
             None => (DEVIATIONS * everywhere.max(scatter_around(&rising, row))).clamp(LEAST_NOISE, most),
         };
-        let deviations = rising.iter().zip(nearest_monotone(&rising)).map(|(value, curve)| (value / curve - 1.0).abs());
-        let excess = |row: usize, deviation: f64| deviation / explained(row);
-        let worst = deviations.enumerate().max_by(|a, b| excess(a.0, a.1).total_cmp(&excess(b.0, b.1)));
-        let Some((worst, change)) = worst else { continue };
-        let noise = explained(worst);
+        let curve = nearest_monotone(&rising);
+        let deviations: Vec<f64> =
+            rising.iter().zip(&curve).map(|(value, curve)| (value / curve - 1.0).abs()).collect();
+        let excesses: Vec<f64> = deviations.iter().enumerate().map(|(row, change)| change / explained(row)).collect();
+        let Some(worst) = (0..rows.len()).max_by(|&a, &b| excesses[a].total_cmp(&excesses[b])) else { continue };
+        let (change, noise) = (deviations[worst], explained(worst));
         if change > noise {
-            let (place, value) = (rows[worst].place, rows[worst].values[index]);
-            return Err(TableError::WrongWay { table, place, column, value, change, noise }.into());
+            let off = excesses.iter().filter(|excess| **excess > 1.0).count();
+            let TableRow { place, ref values, .. } = rows[worst];
+            if off * ROWS_PER_KNOCK > rows.len() || change > MOST_NOISE_OF_FEW {
+                return Err(TableError::WrongWay { table, place, column, value: values[index], change, noise }.into());
+            }
+            // rows after a knock deviate, too
+            let Some(most) = (0..rows.len()).max_by(|&a, &b| deviations[a].total_cmp(&deviations[b])) else { continue };
+            let (x, change, rises) = (rows[most].x, deviations[most], rising[most] > curve[most]);
+            let deviation = if rises == (function != MaterialFunction::Relaxation) { change } else { -change };
+            knock = Some(FitWarning::Outlier { x, deviation });
         }
         greatest = greatest.max(change);
     }
-    Ok(greatest)
+    Ok((greatest, knock))
 }
 
 /// The non-decreasing curve nearest to the values: decreasing neighbours are pooled into their mean, until there are

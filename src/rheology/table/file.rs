@@ -236,7 +236,7 @@ impl Columns {
                 values[1] = if self.complex { modulus / tan.hypot(1.0) } else { modulus };
                 values[2] = values[1] * tan;
             }
-            TableRow { place: Place::Line(row.line), x: values.remove(0), values }
+            TableRow::new(Place::Line(row.line), values.remove(0), values)
         });
         Ok(rows.collect())
     }
@@ -287,7 +287,7 @@ fn sized(given: Option<(&'static str, Option<f64>)>, column: TakenColumn) -> Res
         UnitOf::Sizes(unit, sizes) if !sizes.iter().any(|&size| same(size, given)) => {
             refused(unit, sizes.first().copied())
         }
-        UnitOf::Other(unit) => refused(unit, None),
+        UnitOf::Other(unit) | UnitOf::Unclear(unit) => refused(unit, None),
         _ => Ok(column.with_unit(given)),
     }
 }

@@ -19,6 +19,40 @@ const TEMPERATURE: WantedColumn = WantedColumn {
 /// Temperatures further apart than this \[K\] belong to two isotherms.
 const APART: f64 = 1.0;
 const ICE: f64 = 273.15;
+/// Times or frequencies that differ by less are one, and temperatures \[K\] of one measurement.
+const ONE: f64 = 1e-3;
+const ONE_TEMPERATURE: f64 = 0.1;
+
+type Row = (f64, TableRow);
+
+/// Rows of nearly one temperature, in the order of their temperatures, as isotherms: one begins where a frequency, or a
+/// time, returns, but for one that is measured twice. The rows are followed in the order of the file or of the
+/// temperatures, whichever needs fewer.
+fn sweeps(rows: &[Row], are_times: bool) -> Vec<Vec<Row>> {
+    let is_one = |earlier: &Row, row: &Row| match are_times {
+        // times may be dense
+        true => earlier.1.x == row.1.x,
+        false => (earlier.1.x / row.1.x - 1.0).abs() < ONE,
+    };
+    let returns = |sweep: &[Row], row: &Row| {
+        let is_twice = |last: &Row| is_one(last, row) && (last.0 - row.0).abs() < ONE_TEMPERATURE;
+        !sweep.last().is_some_and(is_twice) && sweep.iter().any(|earlier| is_one(earlier, row))
+    };
+    let split = |rows: &[Row]| {
+        let mut sweeps: Vec<Vec<Row>> = Vec::new();
+        for row in rows {
+            match sweeps.last_mut().filter(|sweep| !returns(sweep, row)) {
+                Some(sweep) => sweep.push(row.clone()),
+                None => sweeps.push(vec![row.clone()]),
+            }
+        }
+        sweeps
+    };
+    let mut as_written = rows.to_vec();
+    as_written.sort_by_key(|row| row.1.place);
+    let (by_temperature, by_place) = (split(rows), split(&as_written));
+    if by_temperature.len() < by_place.len() { by_temperature } else { by_place }
+}
 
 /// Measurements at one temperature.
 ///
@@ -79,8 +113,8 @@ impl Isotherm {
     /// Reads isotherms from one text file: the columns of [`Measurements::from_csv`], and one of the temperature in K
     /// or °C.
     ///
-    /// Rows belong to one isotherm if their temperatures, in order, are less than 1 K apart; its temperature is their
-    /// mean.
+    /// Rows belong to one isotherm if their temperatures, in order, are less than 1 K apart, until a time or frequency
+    /// returns, as in a temperature ramp at several frequencies; its temperature is their mean.
     ///
     /// ```
     /// use viscocontact::TextFormat;
@@ -126,12 +160,13 @@ impl Isotherm {
         let deformation = columns.deformation();
         columns.taken.push(temperature);
         let with_temperature = |mut row: TableRow| (row.values.pop().unwrap_or(f64::NAN) + zero, row);
-        let mut rows: Vec<(f64, TableRow)> = columns.rows(table)?.into_iter().map(with_temperature).collect();
+        let mut rows: Vec<Row> = columns.rows(table)?.into_iter().map(with_temperature).collect();
         rows.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let groups = rows.chunk_by(|a, b| b.0 - a.0 < APART);
-        let isotherm = |rows: &[(f64, TableRow)]| {
+        let near = rows.chunk_by(|a, b| b.0 - a.0 < APART);
+        let groups = near.flat_map(|rows| sweeps(rows, experiment.layout().zero));
+        let isotherm = |rows: Vec<Row>| {
             let mean = rows.iter().map(|row| row.0).sum::<f64>() / rows.len() as f64;
-            let table = Measurements::from_rows(experiment, rows.iter().map(|row| row.1.clone()).collect())?;
+            let table = Measurements::from_rows(experiment, rows.into_iter().map(|row| row.1).collect())?;
             Isotherm::new(mean, Measurements { deformation, columns: columns.taken.clone(), ..table })
         };
         groups.map(isotherm).collect()

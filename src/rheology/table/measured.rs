@@ -12,6 +12,8 @@ use crate::rheology::fit::{FittedSeries, LONG, Sample, Search, polish};
 pub(super) const FLOOR: f64 = 3e-5;
 /// Times per decade of the first fit.
 pub(super) const DENSITY: f64 = 6.0;
+/// A fit is better by this number of variances of the scatter, or more.
+const NOTICEABLE: f64 = 12.0;
 /// Mergers tried, cheapest first: with noise the first-order cost is a poor estimate.
 const TRIES: usize = 6;
 /// With fewer values per parameter than this a smooth spectrum is preferred to a sparse one.
@@ -49,27 +51,45 @@ pub(crate) struct Measured {
     pub(crate) freedoms: f64,
 }
 
+impl FittedSeries {
+    /// Degrees of freedom that samples leave.
+    pub(super) fn freedoms(&self, samples: &[Sample]) -> f64 {
+        samples.len().saturating_sub(self.parameters()).max(1) as f64
+    }
+
+    /// The relative standard deviation of a single value from the series.
+    pub(super) fn noise(&self, samples: &[Sample]) -> f64 {
+        (self.squares(samples) / self.freedoms(samples)).sqrt()
+    }
+}
+
 impl Search {
+    /// The series of least squares.
+    pub(super) fn nearest(&self, samples: &[Sample]) -> FittedSeries {
+        let enough = |series: &FittedSeries| series.worst(samples) <= 0.1 * FLOOR;
+        polish(&self.on_grid(samples, DENSITY), samples, self, LONG, &enough)
+    }
+
+    /// Whether a wider search fits samples better by [`NOTICEABLE`].
+    pub(super) fn misses(&self, wider: &Search, samples: &[Sample]) -> bool {
+        let [own, other] = [self, wider].map(|search| search.nearest(samples));
+        own.squares(samples) > other.squares(samples) + NOTICEABLE * other.noise(samples).powi(2)
+    }
+
     /// The series with the best prediction for measurements.
     pub(crate) fn measured(&self, samples: &[Sample]) -> Measured {
-        let start = self.on_grid(samples, DENSITY);
-        // each strength that is not zero is a parameter of non-negative least squares (Meyer & Woodroofe, Ann. Statist.
-        // 28, 2000)
-        let parameters = ends(&start) + start.terms.len();
-        let enough = |series: &FittedSeries| series.worst(samples) <= 0.1 * FLOOR;
-        let start = polish(&start, samples, self, LONG, &enough);
-        let left = samples.len().saturating_sub(parameters).max(1) as f64;
-        let noise = (start.squares(samples) / left).sqrt();
+        let start = self.nearest(samples);
+        let (noise, freedoms) = (start.noise(samples), start.freedoms(samples));
         // the floor holds for single measurements: a mean of many is not fitted more closely
         let root = (samples.iter().map(|sample| sample.weight).sum::<f64>() / samples.len() as f64).sqrt();
-        let few = samples.len() < VALUES_PER_PARAMETER * parameters;
+        let few = samples.len() < VALUES_PER_PARAMETER * start.parameters();
         let smooth = if few { self.smooth(samples, noise.max(SMOOTH_MISFIT * root)) } else { None };
         let series = match smooth {
             Some(curve) => self.within(&along(&curve, samples), FOLLOWS.max(FOLLOWS_NOISE * noise)),
             None => self.sparse(&start, samples, noise.max(FLOOR * root)),
         };
         let ambiguity = series.worst(&along(&start, samples));
-        Measured { series, least_squares: start, ambiguity, noise, freedoms: left }
+        Measured { series, least_squares: start, ambiguity, noise, freedoms }
     }
 
     /// The terms that improve the prediction, by the criterion of Mallows (Technometrics 15, 1973).
@@ -79,7 +99,7 @@ impl Search {
     /// instead of 0.68 %, and of three retardation times 0.38 % instead of 0.40 %.
     fn sparse(&self, start: &FittedSeries, samples: &[Sample], noise: f64) -> FittedSeries {
         let criterion = |series: &FittedSeries| {
-            series.squares(samples) / (noise * noise) + 2.0 * (ends(series) + 2 * series.terms.len()) as f64
+            series.squares(samples) / (noise * noise) + 2.0 * (series.ends() + 2 * series.terms.len()) as f64
         };
         let prefers = |trial: &FittedSeries, current: &FittedSeries| criterion(trial) <= criterion(current);
         let thinned = self.thinned(start.clone(), samples, TRIES, &prefers);
@@ -114,11 +134,6 @@ impl Search {
         let times = self.grid(SMOOTH_DENSITY.min(SMOOTH_TIMES / decades));
         self.least_squares(samples, times, |time| level(samples, time), weight)
     }
-}
-
-/// Number of non-zero ends, constant and slope, of a series.
-fn ends(series: &FittedSeries) -> usize {
-    usize::from(series.constant > 0.0) + usize::from(series.slope > 0.0)
 }
 
 /// The first material function of the samples at `time`: log-linear between the samples, and constant beyond them.

@@ -5,6 +5,7 @@ mod file;
 mod isotherm;
 mod master_curve;
 mod measured;
+mod outliers;
 mod shift;
 mod uncertainty;
 
@@ -14,11 +15,12 @@ pub use master_curve::MasterCurve;
 
 use crate::error::{Place, Result, TableError, positive};
 use crate::input::TakenColumn;
-use crate::rheology::fit::{FitReport, MOST_MISFIT, Sample, Search};
+use crate::rheology::fit::{FitReport, FitWarning, MOST_MISFIT, Sample, Search};
 use crate::rheology::{CreepSeries, Tension};
 use crate::values::Counted;
 pub use data::Experiment;
-use data::{Deformation, TableRow, validated, wrong_way};
+use data::{Deformation, LEAST_ROWS, TableRow, averaged_repeats, validated, wrong_way};
+use uncertainty::HIDDEN_MODULUS;
 
 /// Denser tables are averaged to this many values per decade, ...
 const MEANS_PER_DECADE: f64 = 24.0;
@@ -26,10 +28,11 @@ const MEANS_PER_DECADE: f64 = 24.0;
 const DECADES: f64 = 30.0;
 /// Factor by which the times of the terms extend beyond the data.
 const BEYOND: f64 = 3.0;
-/// The same factor before the first of relaxation moduli, where shorter terms fit them better: by this number of
-/// variances of the scatter, or more.
+/// The largest modulus of a term at t = 0 over the first of relaxation moduli. With 1 a steep power law is off by
+/// more than 1e-3; with 3 a first modulus that is a little high makes the creep of 2 % of tables a fifth too small.
+const HIDDEN: f64 = 2.0;
+/// The same before the first of relaxation moduli, where shorter terms fit those after it better.
 const BEYOND_FAST: f64 = 10.0;
-const NOTICEABLE: f64 = 12.0;
 
 /// A table of measured creep, relaxation or dynamic moduli. [`Measurements::fit`] makes a body of it.
 ///
@@ -50,6 +53,8 @@ pub struct Measurements {
     deformation: Deformation,
     /// Ascending.
     rows: Vec<TableRow>,
+    /// Number of rows that were averaged with the row before them.
+    averaged: usize,
     samples: Vec<Sample>,
     /// Relative standard deviation of the values, if it is stated.
     scatter: Option<f64>,
@@ -69,7 +74,8 @@ impl Measurements {
     ///
     /// # Errors
     /// If there are fewer than four rows, a value is not finite and positive, or a time is negative or given twice:
-    /// [`Error::Table`](crate::Error::Table).
+    /// [`Error::Table`](crate::Error::Table). Rows at the time of the row before them, as where times are printed with
+    /// few digits, are averaged with it if they agree within 10 % ([`FitReport::averaged`]).
     pub fn creep(table: &[(f64, f64)]) -> Result<Measurements> {
         Measurements::from_pairs(Experiment::Creep, table)
     }
@@ -165,14 +171,17 @@ impl Measurements {
     }
 
     fn of_values(experiment: Experiment, table: impl Iterator<Item = (f64, Vec<f64>)>) -> Result<Measurements> {
-        let row = |(k, (x, values))| TableRow { place: Place::Entry(k), x, values };
+        let row = |(k, (x, values))| TableRow::new(Place::Entry(k), x, values);
         Measurements::from_rows(experiment, table.enumerate().map(row).collect())
     }
 
-    fn from_rows(experiment: Experiment, mut rows: Vec<TableRow>) -> Result<Measurements> {
+    fn from_rows(experiment: Experiment, rows: Vec<TableRow>) -> Result<Measurements> {
+        let given = rows.len();
+        let mut rows = averaged_repeats(rows);
+        let averaged = given - rows.len();
         let samples = validated(experiment.layout(), &mut rows)?;
         let (deformation, scatter, columns) = (Deformation::Unnamed, None, Vec::new());
-        Ok(Measurements { experiment, deformation, rows, samples, scatter, columns })
+        Ok(Measurements { experiment, deformation, rows, averaged, samples, scatter, columns })
     }
 
     /// The body that the table describes: a series with positive coefficients, by least squares of the relative misfit.
@@ -194,7 +203,8 @@ impl Measurements {
     ///
     /// # Errors
     /// If a compliance decreases, a relaxation modulus increases, or a storage modulus decreases with the frequency,
-    /// by more than the scatter of the rows around explains ([`TableError::WrongWay`](crate::rheology::TableError));
+    /// by more than the scatter of the rows around explains ([`TableError::WrongWay`](crate::rheology::TableError)), in
+    /// more than one row of a hundred;
     /// if no series fits the table ([`TableError::Inconsistent`](crate::rheology::TableError)); or if the headings of
     /// its file name moduli in tension ([`TableError::Deformation`](crate::rheology::TableError)).
     pub fn fit(&self) -> Result<CreepSeries> {
@@ -224,7 +234,7 @@ impl Measurements {
     fn fitted(&self, deformation: Deformation) -> Result<CreepSeries> {
         self.deformation.accepts(deformation)?;
         let (layout, samples) = (self.experiment.layout(), &self.samples);
-        let wrong_way = wrong_way(layout, &self.rows, self.scatter)?;
+        let (wrong_way, knock) = wrong_way(layout, &self.rows, self.scatter)?;
         let time = |x: f64| if layout.zero { x } else { 1.0 / x };
         let positive = || samples.iter().map(|sample| time(sample.x)).filter(|t| *t > 0.0);
         let (first, last) = (positive().fold(f64::INFINITY, f64::min), positive().fold(0.0, f64::max));
@@ -233,25 +243,26 @@ impl Measurements {
             constant: None,
             slope: self.experiment == Experiment::Creep,
             times: [first / BEYOND, last * BEYOND],
+            hidden: HIDDEN,
         };
-        let mut measured = search.measured(&averaged);
-        if self.experiment == Experiment::Relaxation && samples[0].x > 0.0 {
-            // terms shorter than the first time have not fully decayed there
-            let wider = Search { times: [first / BEYOND_FAST, last * BEYOND], ..search.clone() };
-            let other = wider.measured(&averaged);
-            if other.least_squares.squares(&averaged) + NOTICEABLE * other.noise.powi(2)
-                < measured.least_squares.squares(&averaged)
-            {
-                (search, measured) = (wider, other);
-            }
+        // terms shorter than the first time have not fully decayed there
+        let wider = Search { times: [first / BEYOND_FAST, last * BEYOND], hidden: HIDDEN_MODULUS, ..search.clone() };
+        let is_late = self.experiment == Experiment::Relaxation && samples[0].x > 0.0;
+        let (averaged, outliers) = (if is_late { &wider } else { &search }).without_outliers(&averaged, self.scatter);
+        let of_others = outliers.first().map(|&(Sample { x, .. }, deviation)| FitWarning::Outlier { x, deviation });
+        let first = if is_late { averaged[0].x } else { first };
+        if is_late && averaged.len() > LEAST_ROWS && search.misses(&wider, &averaged[1..]) {
+            search = wider;
         }
+        let measured = search.measured(&averaged);
         let uncertainty = measured.uncertainty(&search, &averaged, [first, last])?;
         let known_from = uncertainty.known_from;
         // a smooth series through few rows of much noise is further from them than the nearest
         let [report, nearest] =
             [&measured.series, &measured.least_squares].map(|series| FitReport::new(series, samples));
         let nearest = if nearest.rms_misfit() < report.rms_misfit() { nearest } else { report.clone() };
-        let report = report.of_measurements(wrong_way, measured.ambiguity, uncertainty, &nearest);
+        let report = report.of_measurements(wrong_way, measured.ambiguity, uncertainty, &nearest, of_others.or(knock));
+        let report = FitReport { averaged: self.averaged, ..report };
         let most = self.scatter.map_or(MOST_MISFIT, |scatter| scatter.max(MOST_MISFIT));
         let rms = nearest.rms_misfit();
         if let Some(worst) = nearest.worst().filter(|_| rms > most) {

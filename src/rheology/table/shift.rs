@@ -17,6 +17,10 @@ const TRIED: usize = 400;
 const LEAST_OVERLAP: f64 = 0.1;
 /// Relative scatter below which values are as good as exact: the line between two rows is no better.
 const LEAST_SCATTER: f64 = 2e-3;
+/// Isotherms of one body superpose at least so well in a column: worse, they are of no thermorheologically simple body
+/// and match somewhere by chance. Scatters are tried in steps of this factor.
+const MOST_MODEL_ERROR: f64 = 0.1;
+const LADDER: f64 = 1.5;
 /// Least mean of ln(1 + z²): 0.53 of a normal deviate, and more with an outlier in thirty rows, of which each spoils
 /// three differences.
 const EXPECTED: f64 = 0.75;
@@ -81,7 +85,7 @@ pub(super) fn shift_between(colder: &Isotherm, warmer: &Isotherm, is_vertical: b
         let costs: Vec<f64> = offs.iter().flatten().map(|off| (off / scatter).powi(2).ln_1p()).collect();
         (scatter, (costs.iter().sum::<f64>() / costs.len().max(1) as f64).max(EXPECTED))
     };
-    let (scatter, usual): (Vec<f64>, Vec<f64>) = all.iter().map(scattered).unzip();
+    let (mut scatter, usual): (Vec<f64>, Vec<f64>) = all.iter().map(scattered).unzip();
     let pair = Pair { isotherms, slopes, usual, is_vertical };
     let is_constant = |isotherm: &Isotherm| {
         let logs = || isotherm.rows.iter().map(|row| row.values[0].ln());
@@ -96,12 +100,16 @@ pub(super) fn shift_between(colder: &Isotherm, warmer: &Isotherm, is_vertical: b
     let step = (high - low) / TRIED as f64;
     let decades = |shift: f64| (c1.max(w1 - shift) - c0.min(w0 - shift)) / std::f64::consts::LN_10;
     // by the column that determines it best: another may be disturbed
-    let by_column = all.iter().map(|&column| {
-        let cost = |shift: f64| pair.cost(shift, &[column], &scatter) + PER_DECADE * decades(shift);
-        let shift = numeric::least(low, high, TRIED, cost);
-        (shift, pair.error(shift, [low, high], &[column], &scatter))
-    });
-    let mut shift = by_column.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0.0, |best| best.0);
+    let mut by_column: Vec<(f64, f64)> = Vec::new();
+    for &column in &all {
+        let at_scatter = |scatter: &[f64]| {
+            numeric::least(low, high, TRIED, |shift| pair.cost(shift, &[column], scatter) + PER_DECADE * decades(shift))
+        };
+        let is_inside = |shift: f64| (shift - low).min(high - shift) > 0.5 * step;
+        let shift = pair.superposed(column, &mut scatter, at_scatter, is_inside);
+        by_column.push((shift, pair.error(shift, [low, high], &[column], &scatter)));
+    }
+    let mut shift = by_column.into_iter().min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0.0, |best| best.0);
     let mut residual = scatter.clone();
     for _ in 0..3 {
         residual = all.iter().map(|&column| pair.residual(shift, column, scatter[column])).collect();
@@ -111,7 +119,13 @@ pub(super) fn shift_between(colder: &Isotherm, warmer: &Isotherm, is_vertical: b
     let at_end = (shift - low).min(high - shift) < 0.5 * step;
     let apart = residual.iter().copied().fold(f64::INFINITY, f64::min);
     if at_end || apart > MOST_APART {
-        return Err(TableError::NoOverlap { temperatures, apart }.into());
+        let wide = vec![MOST_MODEL_ERROR; columns];
+        let cost = |shift: f64| pair.cost(shift, &all, &wide) + PER_DECADE * decades(shift);
+        let widest = numeric::least(low, high, TRIED, cost);
+        let overlap = (c1 - c0 + w1 - w0) / std::f64::consts::LN_10 - decades(widest);
+        let of_column = |&column: &usize| pair.residual(widest, column, 0.0);
+        let there = all.iter().map(of_column).fold(f64::INFINITY, f64::min);
+        return Err(TableError::NoOverlap { temperatures, apart, overlap, there }.into());
     }
     let error = pair.error(shift, [low, high], &all, &residual);
     let mut disagreement: f64 = 0.0;
@@ -128,6 +142,33 @@ pub(super) fn shift_between(colder: &Isotherm, warmer: &Isotherm, is_vertical: b
 }
 
 impl Pair<'_> {
+    /// The shift by one column, and its scatter: the least with which the isotherms superpose as well as it says,
+    /// inside the range. Smooth isotherms superpose less well than their scatter, for no model of the body is exact;
+    /// with too small a scatter, each difference costs so much that the shift flees from the overlap.
+    fn superposed(
+        &self,
+        column: usize,
+        scatter: &mut [f64],
+        at_scatter: impl Fn(&[f64]) -> f64,
+        is_inside: impl Fn(f64) -> bool,
+    ) -> f64 {
+        let (own, first) = (scatter[column], at_scatter(scatter));
+        let mut shift = first;
+        loop {
+            let residual = self.residual(shift, column, scatter[column]);
+            if is_inside(shift) && residual <= LADDER * scatter[column] {
+                scatter[column] = residual.max(scatter[column]);
+                return shift;
+            }
+            if scatter[column] > MOST_MODEL_ERROR {
+                scatter[column] = own;
+                return first;
+            }
+            scatter[column] *= LADDER;
+            shift = at_scatter(scatter);
+        }
+    }
+
     fn differences(&self, shift: f64, columns: &[usize], mut take: impl FnMut(Difference)) {
         let [colder, warmer] = self.isotherms;
         // warmer at ln t is at ln t − shift on the axis of colder

@@ -9,6 +9,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use super::measured::{DENSITY, FLOOR, Measured};
+use super::outliers::TOLERABLE;
 use crate::error::Result;
 use crate::rheology::fit::{FittedSeries, KNOWN, Sample, Search};
 use crate::rheology::{CreepSpectrum, FitReport, FitWarning, MaterialFunction, RelaxationSpectrum};
@@ -21,9 +22,7 @@ const DEVIATIONS: f64 = 2.2;
 /// Times per decade at which the interval is computed.
 const PER_DECADE: f64 = 8.0;
 /// A body relaxes before the first sample from at most so many times the modulus measured there.
-const HIDDEN_MODULUS: f64 = 10.0;
-/// Uncertainties and systematic misfits below this need no warning.
-const TOLERABLE: f64 = 5e-3;
+pub(super) const HIDDEN_MODULUS: f64 = 10.0;
 /// An uncertainty of more than this times the misfit is not due to the scatter of the samples.
 const OVER_SCATTER: f64 = 2.0;
 /// Mean square of the difference between neighbouring misfits over their mean square (von Neumann): 2 for noise, less
@@ -139,6 +138,7 @@ impl FitReport {
         ambiguity: f64,
         uncertainty: Uncertainty,
         nearest: &FitReport,
+        outlier: Option<FitWarning>,
     ) -> FitReport {
         let Uncertainty { interval, known_from: until } = uncertainty;
         let (rms, first) = (self.rms_misfit(), interval[0].0);
@@ -147,7 +147,7 @@ impl FitReport {
         } else if nearest.rms_misfit() > TOLERABLE && nearest.is_systematic() {
             Some(FitWarning::Systematic { rms: nearest.rms_misfit() })
         } else {
-            (until > first).then_some(FitWarning::BeginsLate { first, until })
+            outlier.or((until > first).then_some(FitWarning::BeginsLate { first, until }))
         };
         FitReport { wrong_way, interval, warning, ..self }
     }

@@ -30,7 +30,7 @@ pub(super) fn maps(t: &mut Table) {
     t.row(HeightMap::from_points(&[[0.0, 0.0, 1.0], [NAN, 0.0, 1.0]]), Value, "x of the points = NaN → within ±1e30 m");
     t.row(HeightMap::from_points(&[[0.0, 0.0, 1.0], [0.0, 0.0, 2.0]]), Value, "different x of the points: 1 given, at least 2 needed");
     t.row(HeightMap::from_points(&[&square[..], &[[1.0, 1.0, 2.0]]].concat()), File, "lines 4 and 5 give two heights for the point (1, 1) m: give their mean");
-    t.row(HeightMap::from_points(&[&square[..], &[[2.3, 1.0, 2.0]]].concat()), File, "line 1: x = 0 m is 0.04 spacings…off the regular grid…");
+    t.row(HeightMap::from_points(&[&square[..], &[[2.3, 1.0, 2.0]]].concat()), File, "line 4: x = 1 m is 0.076 spacings…off the regular grid…");
     t.row(HeightMap::from_points(&diagonal), File, "200 points are too few for…200 x 200…: interpolate…");
     t.row(own().centered_at([1.0, 0.0]).unwrap().resampled(&grid()), Value, "no height is known: …take a part of the map with heights");
     t.row(own().resampled(&Grid::square(1 << 20, 1.0e-3).unwrap()), Memory, "a map on another grid needs 8796093022208 bytes…take fewer cells…");

@@ -275,7 +275,7 @@ pub fn corpus() -> Vec<Layout> {
         })
         .collect();
     #[rustfmt::skip]
-    let tables: [(Kind, &str, &Vec<Vec<f64>>, &str); 17] = [
+    let tables: [(Kind, &str, &Vec<Vec<f64>>, &str); 18] = [
         (Kind::Table(Creep), "creep", &creep, "t~s~0; J~1/Pa~1"),
         (Kind::Table(Creep), "creep, reversed", &creep, "Creep compliance~1/GPa~1; Time~min~0; Sample~~A"),
         (Kind::Table(Creep), "creep in tension", &creep, "t~µs~0; D~1/MPa~1"),
@@ -288,6 +288,13 @@ pub fn corpus() -> Vec<Layout> {
         (Kind::Table(Dynamic), "time and frequency", &dynamic, "Time~s~count; Freq~Hz~0; E'~MPa~1; E''~MPa~2; T~°C~=23"),
         (Kind::Table(Dynamic), "magnitude and phase", &dynamic, "f~Hz~0; |E*|~MPa~magnitude; phase~°~phase"),
         (Kind::Table(Dynamic), "loss factor", &dynamic, "omega~rad/s~0; G'~kPa~1; tan delta~~tan"),
+        (
+            Kind::Table(Dynamic),
+            "rheometer with other columns",
+            &dynamic,
+            "Point No.~~count; Angular Frequency~rad/s~0; Storage Modulus~Pa~1; Loss Modulus~Pa~2; Loss Factor~1~tan; \
+             Shear Strain~%~=1; Torque~mN·m~=0.5; Status~~ME",
+        ),
         (Kind::Table(Storage), "storage alone", &storage, "f~Hz~0; G'~MPa~1"),
         (Kind::Isotherms(Dynamic), "isotherm", &dynamic, "f~Hz~0; E_stor~MPa~1; E_loss~MPa~2; T~°C~=18"),
         (Kind::Recording, "AFM", &curve, "t~s~0; F~nN~1; z~nm~2"),

@@ -132,8 +132,13 @@ mod tests {
         }
         let zero = read(&FULL.replace("XRes = 3", "XRes = 0"), &six);
         assert!(matches!(zero, Error::CountOutOfRange { value: 0, .. }), "{zero}");
-        let infinite = read(FULL, &[1.0, f32::INFINITY, 1.0, 1.0, 1.0, 1.0]);
-        assert_eq!(infinite, MapError::NotFinite { entry: 3, value: f64::INFINITY }.into());
+    }
+
+    #[test]
+    fn infinite_heights_and_the_largest_number_are_missing() {
+        let heights = [1.0, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, f32::MIN, 3.0e38];
+        let map = HeightMap::from_gsf(&file(FULL, &heights)[..], None).unwrap();
+        assert_eq!(map.missing(), 4);
     }
 
     #[test]

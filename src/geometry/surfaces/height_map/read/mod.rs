@@ -26,7 +26,7 @@ use crate::geometry::HeightMap;
 use crate::{Grid, input, memory};
 
 use header::Header;
-use number::{Kind, Number};
+use number::{Kind, Number, is_missing};
 
 /// Extensions of the formats that include the lengths of the map.
 #[cfg(feature = "x3p")]
@@ -98,16 +98,18 @@ fn count(cells: [usize; 2], spacing: [f64; 2]) -> Result<usize> {
     Ok(Grid::new(cells, [cells[0] as f64 * spacing[0], cells[1] as f64 * spacing[1]])?.len())
 }
 
-/// The heights that a file lists in words, NaN for words where `is_missing` is true; there must be `count` words.
+/// The heights that a file lists in words, NaN for words where `is_word` is true and numbers for missing points; there
+/// must be `count` words.
 fn listed<'a>(
     words: impl Iterator<Item = &'a str>,
-    is_missing: impl Fn(&str) -> bool,
+    is_word: impl Fn(&str) -> bool,
     count: usize,
     format: &'static str,
     refuse: impl Fn(&str) -> MapError,
 ) -> Result<Vec<f64>> {
     let height = |word: &str| match word.parse::<f64>() {
-        _ if is_missing(word) => Ok(f64::NAN),
+        _ if is_word(word) => Ok(f64::NAN),
+        Ok(height) if is_missing(word, height) => Ok(f64::NAN),
         Ok(height) if !height.is_infinite() => Ok(height),
         _ => Err(refuse(word)),
     };

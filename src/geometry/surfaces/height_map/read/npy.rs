@@ -19,7 +19,8 @@ impl HeightMap {
     /// Needs the feature `npy`.
     ///
     /// Floats of single and double precision and integers are supported, in either byte order and in C or Fortran
-    /// order. NaN marks missing points. Convert an image, whose first axis points down, by `numpy.flipud(image).T`.
+    /// order. NaN, infinity and the largest number of single precision mark missing points. Convert an image, whose
+    /// first axis points down, by `numpy.flipud(image).T`.
     ///
     /// # Errors
     /// [`Error::Map`](crate::Error::Map) if the file cannot be read, is malformed or contains another type of

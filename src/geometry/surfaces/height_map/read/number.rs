@@ -4,6 +4,15 @@ use super::wrong_size;
 use crate::error::Result;
 use crate::memory;
 
+/// The magnitude from which a number stands for a point without a height: the largest number of single precision, in
+/// seven digits, with which many programs mark it, as others do by infinity.
+const MISSING: f64 = 3.402823e38;
+
+/// Whether a word stands for a missing point by its `number`; a number that overflows is none.
+pub(super) fn is_missing(word: &str, number: f64) -> bool {
+    number.abs() >= MISSING && (number.is_finite() || !word.contains(|c: char| c.is_ascii_digit()))
+}
+
 /// Binary representation of a number.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Number {
@@ -42,23 +51,19 @@ impl Number {
         }
     }
 
-    /// The least representable number.
+    /// The least whole number; floats that stand for missing points are NaN already.
     pub(super) fn least(self) -> f64 {
-        match self.kind {
-            Kind::Unsigned => 0.0,
-            Kind::Signed => -(2.0_f64.powi(8 * self.size as i32 - 1)),
-            Kind::Float if self.size == 4 => f32::MIN.into(),
-            Kind::Float => f64::MIN,
-        }
+        if self.kind == Kind::Signed { -(2.0_f64.powi(8 * self.size as i32 - 1)) } else { f64::NAN }
     }
 
-    /// The first `count` numbers of `data`; if `exact`, further data are an error.
+    /// The first `count` heights of `data`, NaN for missing points; if `exact`, further data are an error.
     pub(super) fn decode_all(self, format: &'static str, data: &[u8], count: usize, exact: bool) -> Result<Vec<f64>> {
         let expected = count.saturating_mul(self.size);
         if data.len() < expected || exact && data.len() > expected {
             return Err(wrong_size(format, "bytes of heights", data.len(), expected).into());
         }
-        let numbers = data.chunks_exact(self.size).take(count).map(|bytes| self.decode(bytes));
+        let height = |bytes| Some(self.decode(bytes)).filter(|height| height.abs() < MISSING).unwrap_or(f64::NAN);
+        let numbers = data.chunks_exact(self.size).take(count).map(height);
         memory::collect("the numbers of a file", count, numbers)
     }
 }

@@ -185,7 +185,7 @@ mod tests {
         let size = |found| MapError::Size { format: FORMAT, what: "heights", found, expected: 6, exact: true };
         assert_eq!(read("5.5", ""), size(5).into());
         assert_eq!(read("5.5", "5 5"), size(7).into());
-        for token in ["GOOD", "inf", "1,5", "1e999"] {
+        for token in ["GOOD", "1,5", "1e999"] {
             let text = token.to_owned();
             let entry = MapError::Entry { format: FORMAT, key: "height", text, allowed: "a finite number or BAD" };
             assert_eq!(read("5.5", token), entry.into());

@@ -4,6 +4,7 @@ use std::collections::HashSet;
 use std::io::Read;
 
 use super::First;
+use super::number::is_missing;
 use crate::Grid;
 use crate::error::{Error, MapError, Result, TextError};
 use crate::geometry::{HeightMap, LengthUnit};
@@ -22,7 +23,8 @@ impl HeightMap {
     /// first line is the top.
     ///
     /// `format` states how the text is written, and which height stands for missing points. A field that is empty,
-    /// `nan`, `bad`, `---`, `no data` or `n/a` is a missing point. Lines of words at the beginning are a header, as
+    /// `nan`, `inf`, `bad`, `---`, `no data` or `n/a` is a missing point, and so is the largest number of single
+    /// precision, as in all files of maps. Lines of words at the beginning are a header, as
     /// of Wyko, ESRI, Bruker, Zygo or Keyence: its lengths and units are not read, but its `NODATA_value` is. An
     /// index 0, 1, 2… above and beside the heights, as of a data frame, is left out.
     ///
@@ -109,7 +111,11 @@ pub(super) fn height(row: &TextRow, column: usize) -> Result<f64, TextError> {
         return Ok(f64::NAN);
     }
     let height = row.number(column)?;
-    if height.is_infinite() { Err(row.not_numeric(column)) } else { Ok(height) }
+    match is_missing(&row.fields[column], height) {
+        true => Ok(f64::NAN),
+        false if height.is_infinite() => Err(row.not_numeric(column)),
+        false => Ok(height),
+    }
 }
 
 /// The matrix without the index of a data frame: numbers from 0 in the first row and column, whose corner is empty.
@@ -220,6 +226,12 @@ mod tests {
             HeightMap::from_text(text.as_bytes(), [3.0, 2.0], LengthUnit::Metre, format).unwrap().missing()
         };
         assert_eq!(read("1 2 3\n4 5 6\n", f64::INFINITY), 0);
+        for missing in ["inf", "-inf", "Infinity", "3.402823e+38", "-3.4028234663852886e+38"] {
+            let text = format!("1 2 3\n4 {missing} 6\n");
+            let map = HeightMap::from_text(text.as_bytes(), [3.0, 2.0], LengthUnit::Nanometre, TextFormat::default())
+                .unwrap();
+            assert_eq!(map.missing(), 1, "{missing}");
+        }
         assert_eq!([read("1 2 3\n4 -9999 6\n", -9999.0), read("1 2 3\n4 5 6\n", f64::NAN)], [1, 0]);
     }
 
@@ -227,7 +239,7 @@ mod tests {
     fn malformed_lines_are_reported() {
         let columns = read("# a\n1,2,3\n4,5\n").unwrap_err();
         assert!(matches!(columns, Error::Text(TextError::Columns { line: 3, found: 2, expected: 3, .. })), "{columns}");
-        for text in ["five", "inf", "1e999", "2:3"] {
+        for text in ["five", "1e999", "2:3"] {
             let numeric = TextError::NotNumeric { line: 2, column: 2, text: text.into() };
             assert_eq!(read(&format!("1 2 3\n4 {text} 6\n")).unwrap_err(), numeric.into());
         }
@@ -256,7 +268,7 @@ mod tests {
                 "{error}"
             );
         }
-        for (text, value) in [("1 2 3\n4 -9999 6\n", -9999.0), ("1 2 3\n-3.4028235e38 5 6\n", -3.4028235e38)] {
+        for (text, value) in [("1 2 3\n4 -9999 6\n", -9999.0), ("1 2 3\n-1e33 5 6\n", -1e33)] {
             assert_eq!(read(text).unwrap_err(), MapError::StandIn { value, count: 1 }.into());
             let read = |missing: f64| {
                 let format = TextFormat::default().with_missing_height(missing);

@@ -32,9 +32,10 @@ impl HeightMap {
     /// Needs the feature `x3p`.
     ///
     /// Heights are signed integers of 16 or 32 bits (`I`, `L`) or floats of single or double precision (`F`, `D`), in a
-    /// binary file or in the XML itself, times `Increment` plus `Offset` of their axis. Missing points are NaN, empty
-    /// in the XML, or marked in the file of valid points. The first row has the smallest x2. The offsets of x and y
-    /// are ignored. The MD5 sums are not verified, the checksums of the archive are.
+    /// binary file or in the XML itself, times `Increment` plus `Offset` of their axis. Missing points are NaN,
+    /// infinite or the largest number of single precision, empty in the XML, or marked in the file of valid points. The
+    /// first row has the smallest x2. The offsets of x and y are ignored. The MD5 sums are not verified, the
+    /// checksums of the archive are.
     ///
     /// An archive may contain at most 2 GiB of heights and 64 MiB of XML, so that a small one cannot fill the memory.
     ///

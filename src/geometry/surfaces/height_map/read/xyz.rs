@@ -160,7 +160,7 @@ fn points(
     for (k, column) in taken.iter().enumerate() {
         let given = units[usize::from(k == last)];
         let differs = |size: f64| !same(size, given.factor());
-        if column.unit().is_ok_and(differs) || matches!(column.unit_of, UnitOf::Other(_)) {
+        if column.unit().is_ok_and(differs) || matches!(column.unit_of, UnitOf::Other(_) | UnitOf::Unclear(_)) {
             let (heading, given) = (column.heading().to_owned(), name(Quantity::LENGTH, given.factor()));
             return Err(MapError::OtherUnit { column: column.index() + 1, heading, given }.into());
         }
@@ -222,13 +222,15 @@ fn axis(points: &[Point], name: &'static str, axis: usize) -> Result<RegularAxis
     }
     let (origin, spacing) = fitted_line(&positions, value);
     positive("spacing of the points", spacing)?;
+    let off = |k: usize| ((value(k) - origin) / spacing - positions[k]).abs();
+    if let Some(k) =
+        (0..order.len()).max_by(|&a, &b| off(a).total_cmp(&off(b))).filter(|&k| off(k) > MAX_OFFSET || off(k).is_nan())
+    {
+        let (line, value, off, allowed) = (points[order[k]].line, value(k), off(k), MAX_OFFSET);
+        return Err(MapError::OffGrid { line, axis: name, value, spacing, off, allowed }.into());
+    }
     let mut indices = vec![0; order.len()];
     for (k, &position) in positions.iter().enumerate() {
-        let off = ((value(k) - origin) / spacing - position).abs();
-        if off > MAX_OFFSET || off.is_nan() {
-            let (line, allowed) = (points[order[k]].line, MAX_OFFSET);
-            return Err(MapError::OffGrid { line, axis: name, value: value(k), spacing, off, allowed }.into());
-        }
         indices[order[k]] = position as usize;
     }
     Ok(RegularAxis { cells: (position as usize).saturating_add(1), spacing, indices })
@@ -361,7 +363,7 @@ mod tests {
             ("one 0 1", 1, "one"),
             ("-3.4028235e38 0 1", 1, "-3.4028235e38"),
             ("1 nan 1", 2, "nan"),
-            ("1 0 inf", 3, "inf"),
+            ("1 0 1e999", 3, "1e999"),
         ] {
             let wanted = TextError::NotNumeric { line: 2, column, text: text.into() };
             assert_eq!(read(&format!("0 0 1\n{line}\n")).unwrap_err(), wanted.into());

@@ -1,0 +1,102 @@
+//! Samples that contradict all others: a step of the strain that rings or lasts, a knock, a slip of the pen.
+//!
+//! Left in, one would not only be off itself. The first modulus of relaxation, a little high, is followed by a term
+//! that has a large modulus at t = 0, which nothing else bounds and which slows the creep.
+
+use super::data::{DEVIATIONS, MOST_NOISE};
+use crate::rheology::fit::{FittedSeries, Sample, Search};
+use crate::rheology::table::measured::FLOOR;
+
+/// Uncertainties and systematic misfits below this need no warning.
+pub(super) const TOLERABLE: f64 = 5e-3;
+/// Relative deviations of outliers are at least this: less does little, and curves without scatter are continued no
+/// better.
+const LEAST: f64 = 1e-2;
+/// A fit of all samples leaves less of an outlier inside than a fit of the others, but at least this many deviations.
+const SUSPECT: f64 = 2.0;
+/// What a fit misses of an end without scatter, over what it misses of the sample next to it, varies by less.
+const CONTINUED: f64 = 2.0;
+/// Of so many rows, one may be an outlier: more are a property of the table, and fewer do not tell their scatter.
+const ROWS_PER_OUTLIER: usize = 20;
+
+impl Search {
+    /// The samples that do not contradict all others, and those that do, with their relative deviation from the fit of
+    /// the others. `scatter` is the relative standard deviation of a value, if it is stated.
+    pub(super) fn without_outliers(
+        &self,
+        samples: &[Sample],
+        scatter: Option<f64>,
+    ) -> (Vec<Sample>, Vec<(Sample, f64)>) {
+        let (mut kept, mut outliers) = (samples.to_vec(), Vec::new());
+        let rows = |kept: &[Sample]| kept.iter().filter(|sample| sample.function == kept[0].function).count();
+        while rows(&kept) >= ROWS_PER_OUTLIER * (outliers.len() + 1) {
+            let whole = self.nearest(&kept);
+            let noise = whole.noise(&kept).max(FLOOR);
+            let left = |k: usize| whole.misfit(&kept[k]).abs() * kept[k].weight.sqrt();
+            // terms follow rows at the ends, whatever they are
+            let is_end = |k: usize| {
+                k == 0 && kept[0].x > 0.0 || kept.get(k + 1).is_none_or(|next| next.function != kept[k].function)
+            };
+            let worst = (0..kept.len()).max_by(|&a, &b| left(a).total_cmp(&left(b)));
+            let worst = worst.filter(|&k| left(k) > SUSPECT * noise && !is_end(k));
+            let tried = (0..kept.len()).filter(|&k| is_end(k)).chain(worst);
+            let excess = |k: usize| (k, self.excess(&kept, k, is_end(k), scatter));
+            let found = tried.map(excess).max_by(|a, b| a.1.0.total_cmp(&b.1.0));
+            let is_outlier = |excess: f64, deviation: f64| excess > 1.0 && deviation.abs() < MOST_NOISE;
+            let Some((k, (_, deviation))) = found.filter(|(_, found)| is_outlier(found.0, found.1)) else { break };
+            outliers.push((kept.remove(k), deviation));
+        }
+        (kept, outliers)
+    }
+
+    /// How far a sample deviates from the fit of the others, over what their scatter explains; and relatively. An end
+    /// must deviate as far from a parabola through its neighbours, and further than the sample next to it deviates
+    /// from the fit of the rest: few curves can be continued.
+    fn excess(&self, samples: &[Sample], k: usize, is_end: bool, scatter: Option<f64>) -> (f64, f64) {
+        let (fit, others, deviation) = self.left_out(samples, k);
+        let parameters = fit.parameters() as f64;
+        let noise = scatter.unwrap_or(0.0).max(fit.noise(&others));
+        // the curve itself is uncertain, and few samples tell their scatter poorly: of Student's t, whose square
+        // exceeds six deviations' as rarely, by a factor of about 1 + 12/n
+        let spread = (1.0 + 2.0 * parameters / others.len() as f64) * (1.0 + 12.0 / fit.freedoms(&others));
+        let mut explained = (DEVIATIONS * noise * (spread / samples[k].weight).sqrt()).max(LEAST);
+        let mut found = deviation.abs();
+        if is_end && found > explained {
+            let own = |other: &&Sample| other.function == samples[k].function;
+            let neighbours: Vec<&Sample> = if k == 0 {
+                samples[1..].iter().take(3).collect()
+            } else {
+                samples[..k].iter().rev().filter(own).take(3).collect()
+            };
+            // both scatter too
+            let scattered = SUSPECT * noise / samples[k].weight.sqrt();
+            found = found.min(continued(&neighbours, &samples[k]).abs() + scattered);
+            let next = self.left_out(&others, if k == 0 { 0 } else { k - 1 }).2;
+            explained = explained.max(CONTINUED * (next.abs() - scattered));
+        }
+        (found / explained, deviation)
+    }
+
+    /// The fit of all samples but one, these, and the relative deviation of the one from it.
+    fn left_out(&self, samples: &[Sample], k: usize) -> (FittedSeries, Vec<Sample>, f64) {
+        let mut others = samples.to_vec();
+        let sample = others.remove(k);
+        let fit = self.nearest(&others);
+        let deviation = 1.0 / (1.0 + fit.misfit(&sample)) - 1.0;
+        (fit, others, deviation)
+    }
+}
+
+/// The relative deviation of an end from the parabola through its neighbours, on logarithmic axes: of coarse tables, no
+/// series of positive strengths can be continued so well.
+fn continued(neighbours: &[&Sample], end: &Sample) -> f64 {
+    let log: f64 = neighbours
+        .iter()
+        .map(|of| {
+            let others = neighbours.iter().filter(|other| other.x != of.x);
+            let weight: f64 = others.map(|other| (end.x / other.x).ln() / (of.x / other.x).ln()).product();
+            weight * of.value.ln()
+        })
+        .sum();
+    end.value / log.exp() - 1.0
+}
