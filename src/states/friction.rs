@@ -32,7 +32,7 @@ pub struct LateralWork {
 /// the normal load: the contact sticks up to a level s, [`StatesContact::stick_level`], and slips outside it, where
 /// τ = ± f p. With bodies that respond alike to both, the traction is a superposition of the elastic states as the
 /// pressure is, τ = Σ θ_i (p_e(l_i) − p_e(l_i−1)), for every history of both loads: slip and its reversal, creep,
-/// contacts that shrink and meet again (docs/guide/friction.md has the proof and where it was tested).
+/// contacts that shrink and meet again (docs/maintainers/numerics.md has the proof).
 ///
 /// The levels that a step meets were sheared and pressed together: a step in which P and Q rise together is oblique
 /// loading, all of which sticks if Q < f P. Steps are linear in time, of second order: slip begins and ends in kinks. To press first
