@@ -94,7 +94,7 @@ impl Scene {
             .map(|_| {
                 let k = [0, 1].map(|_| 1.0 + draws.below(n / 3) as f64);
                 let height = (k[0] * k[0] + k[1] * k[1]).powf(-0.9) * draws.between(0.0, 1.0);
-                [2.0 * PI * k[0], 2.0 * PI * k[1], height, draws.between(0.0, 6.28)]
+                [2.0 * PI * k[0], 2.0 * PI * k[1], height, draws.between(0.0, 2.0 * PI)]
             })
             .collect();
         let ([x0, y0], curved) = ([0, 1].map(|_| draws.between(-0.1, 0.1)), draws.between(0.5, 6.0));
@@ -134,7 +134,7 @@ impl Scene {
 
     /// Lengths of steps, forces, and what acts along the surface as a part of what friction carries about.
     pub fn steps(&self, draws: &mut Draws, count: usize) -> Vec<(f64, f64, [f64; 3], u8)> {
-        let (mut angle, mut force, kind) = (draws.between(0.0, 6.28), self.force, draws.below(4) as u8);
+        let (mut angle, mut force, kind) = (draws.between(0.0, 2.0 * PI), self.force, draws.below(4) as u8);
         (0..count)
             .map(|k| {
                 if k == 0 || draws.chance(0.4) {
@@ -317,14 +317,14 @@ fn check(seed: u64, n: usize, worst: &mut Worst) {
                 worst.slip = worst.slip.max(beside.max(-along) / far);
             }
         }
-        for k in 0..3 {
+        for (k, sum) in sums.into_iter().enumerate() {
             if let Component::Force(wanted) = load.components[k] {
                 let scale = area * most * (pressure.iter().filter(|p| **p > 0.0).count() as f64).max(1.0);
-                worst.balance = worst.balance.max((sums[k] - wanted).abs() / scale);
+                worst.balance = worst.balance.max((sum - wanted).abs() / scale);
             } else if let Component::Motion(to) = load.components[k] {
                 assert!((contact.motion()[k] - to).abs() <= 1e-15 * to.abs());
             }
-            assert!((contact.force()[k] - sums[k]).abs() <= 1e-12 * (sums[k].abs() + area * most));
+            assert!((contact.force()[k] - sum).abs() <= 1e-12 * (sum.abs() + area * most));
         }
         scene.relaxation.commit(dt, &mut dense.past, now);
         dense.motion = contact.motion();
