@@ -55,7 +55,7 @@ impl ShearLoad {
                 Component::Force(value) => (force, value),
                 Component::Motion(value) => (motion, value),
             };
-            within(field, value, value.abs() <= LARGEST, "at most 1e100 in absolute value")?;
+            within(field, value, value.abs() <= LARGEST, "finite, at most 1e100 in absolute value")?;
         }
         Ok(())
     }
