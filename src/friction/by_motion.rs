@@ -6,7 +6,7 @@
 
 use crate::friction::kernel::TangentialKernel;
 use crate::friction::newton::{Outcome, Work};
-use crate::friction::problem::{Problem, Solution};
+use crate::friction::problem::{Problem, Solution, take_motion};
 use crate::linalg;
 
 /// Newton steps.
@@ -32,15 +32,9 @@ struct Search<'a> {
 impl Search<'_> {
     /// What is missing of each load under this motion, over what friction can carry, if the tractions are found.
     fn missing(&mut self, solution: &mut Solution, motion: [f64; 3]) -> Option<[f64; 3]> {
-        let (problem, n) = (self.problem, self.problem.cells());
+        let problem = self.problem;
         self.drift.copy_from_slice(problem.drift);
-        for i in problem.touching() {
-            for k in problem.driven() {
-                let (mode, by) = (problem.mode(k, i), problem.entered[i] * motion[k]);
-                self.drift[i] -= by * mode[0];
-                self.drift[n + i] -= by * mode[1];
-            }
-        }
+        take_motion(&mut self.drift, problem.touching(), problem.entered, problem.places, motion);
         let held = Problem { drift: &self.drift, wanted: [None; 3], ..*problem };
         for is_cold in [false, true] {
             if is_cold {
@@ -50,9 +44,8 @@ impl Search<'_> {
             self.outcome.iterations += found.iterations;
             self.outcome.residual = found.residual;
             if found.is_solved {
-                let missing = |k: usize, wanted: f64| {
-                    (wanted - problem.carried(k, &solution.traction)) / (wanted.abs() + 1e-3 * problem.reach(k))
-                };
+                let missing =
+                    |k: usize, wanted: f64| (wanted - problem.carried(k, &solution.traction)) / problem.size(k);
                 return Some([0, 1, 2].map(|k| problem.wanted[k].map_or(0.0, |wanted| missing(k, wanted))));
             }
         }

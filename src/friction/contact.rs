@@ -8,9 +8,9 @@ use crate::friction::kernel::{TangentialKernel, TangentialResponse};
 use crate::friction::limit::FrictionLimit;
 use crate::friction::load::{Component, LARGEST, ShearLoad};
 use crate::friction::newton::Work;
-use crate::friction::problem::{Cell, Problem, Solution, rigid};
+use crate::friction::problem::{Cell, Problem, Solution, take_motion};
 use crate::friction::region::{Rectangle, extent};
-use crate::hereditary::{ExponentialRule, GroupHistory, Interpolant};
+use crate::hereditary::{GroupHistory, Interpolant};
 use crate::load::Load;
 use crate::solver::RigidMotion;
 
@@ -123,26 +123,21 @@ impl FrictionContact {
             return Err(FrictionError::OtherBodies.into());
         }
         let response = TangentialResponse::new(&normal.scene.ground.kernel, poisson)?;
-        let rule: ExponentialRule = normal.computation.state.history.rule().clone();
-        let history = GroupHistory::new(rule, 0);
-        let region = Rectangle { start: [0; 2], cells: [1; 2] };
-        let step = StepFields { gap: vec![0.0; normal.grid().len()], ..StepFields::default() };
-        let mut contact = FrictionContact {
+        Ok(FrictionContact {
             start: normal.snapshot(),
-            kernel: TangentialKernel::new(&response, region.cells),
+            history: GroupHistory::new(normal.computation.state.history.rule().clone(), 0),
+            // of no use before bodies touch
+            kernel: TangentialKernel::new(&response, [1; 2]),
+            region: Rectangle { start: [0; 2], cells: [0; 2] },
+            step: StepFields { gap: vec![0.0; normal.grid().len()], ..StepFields::default() },
             normal,
             limit: Arc::new(limit),
             response,
-            region: Rectangle { cells: [0; 2], ..region },
-            history,
             solution: Solution::default(),
-            step,
             motion: [0.0; 3],
             force: [0.0; 3],
             work: [0.0; 2],
-        };
-        contact.step.trial.resize(0);
-        Ok(contact)
+        })
     }
 
     /// Advances by `dt` \[s\] to a load, and to what acts along the surface; `dt` = 0 is a jump. What a step meets
@@ -209,16 +204,10 @@ impl FrictionContact {
         for (k, component) in shear.components.iter().enumerate() {
             match *component {
                 Component::Force(force) => wanted[k] = Some(force / area),
-                Component::Motion(to) => {
-                    given[k] = to - motion[k];
-                    for i in 0..cells {
-                        let mode = rigid(k, places[i]);
-                        drift[i] -= entered[i] * given[k] * mode[0];
-                        drift[cells + i] -= entered[i] * given[k] * mode[1];
-                    }
-                }
+                Component::Motion(to) => given[k] = to - motion[k],
             }
         }
+        take_motion(drift, 0..cells, entered, places, given);
         let side = self.response.self_influence();
         let problem = Problem { side, compliance, bound, drift, places, entered, wanted };
         let (factor, direction) = problem.load_factor();

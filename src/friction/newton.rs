@@ -107,7 +107,7 @@ impl Solution {
         let least = NEGLIGIBLE * problem.compliance * largest * problem.side * f64::from(count).sqrt();
         let mut outcome = Outcome::default();
         work.secant = None;
-        let forces = problem.wanted.map(|wanted| wanted.unwrap_or(0.0).abs());
+        let sizes = [0, 1, 2].map(|k| problem.size(k));
         for iteration in 0..=MOST_STEPS {
             kernel.apply(&self.traction, &mut work.stress);
             if iteration == 0 {
@@ -118,9 +118,7 @@ impl Solution {
             let scale = (problem.compliance * stress.fold(0.0, f64::max)).max(drift).max(least).max(f64::MIN_POSITIVE);
             let gaps =
                 [0, 1, 2].map(|k| problem.wanted[k].map_or(0.0, |wanted| wanted - problem.carried(k, &self.traction)));
-            // forces against what friction can carry, torques against its part of them
-            let balance =
-                problem.driven().map(|k| gaps[k].abs() / (forces[k] + 1e-3 * problem.reach(k))).fold(0.0, f64::max);
+            let balance = problem.driven().map(|k| gaps[k].abs() / sizes[k]).fold(0.0, f64::max);
             let residual = self.judge(problem, work) / scale;
             outcome =
                 Outcome { iterations: iteration, residual, is_solved: residual <= tolerance && balance <= tolerance };

@@ -69,12 +69,30 @@ impl Problem<'_> {
     pub(super) fn gradient(&self, stress: &[f64], motion: [f64; 3], out: &mut [f64]) {
         let n = self.cells();
         for i in self.touching() {
-            let mut g = [0, n].map(|start| self.compliance * stress[start + i] + self.drift[start + i]);
-            for k in self.driven() {
-                let (mode, by) = (self.mode(k, i), self.entered[i] * motion[k]);
-                g = [g[0] - by * mode[0], g[1] - by * mode[1]];
-            }
-            (out[i], out[n + i]) = (g[0], g[1]);
+            [i, n + i].into_iter().for_each(|at| out[at] = self.compliance * stress[at] + self.drift[at]);
+        }
+        take_motion(out, self.touching(), self.entered, self.places, motion);
+    }
+
+    /// The scale of what may be missing of a load: forces against what friction can carry, torques against its part.
+    pub(super) fn size(&self, k: usize) -> f64 {
+        self.wanted[k].unwrap_or(0.0).abs() + 1e-3 * self.reach(k)
+    }
+}
+
+/// Takes a B d out of a displacement of some cells.
+pub(super) fn take_motion(
+    field: &mut [f64],
+    cells: impl Iterator<Item = usize>,
+    entered: &[f64],
+    places: &[[f64; 2]],
+    motion: [f64; 3],
+) {
+    for i in cells {
+        for (k, by) in motion.into_iter().enumerate() {
+            let (mode, by) = (rigid(k, places[i]), entered[i] * by);
+            field[i] -= by * mode[0];
+            field[places.len() + i] -= by * mode[1];
         }
     }
 }
