@@ -53,14 +53,14 @@ fn elastic(cells: usize, law: impl Attraction + 'static) -> Result<Vec<(f64, f64
 
 pub fn exponential() -> Outcome {
     let found = greatest_pull(&elastic(96, ExponentialAttraction::new(1.0, 1.0)?)?);
-    let rows = [("greatest pull over π w R", found / PI, 1.664_076_85, 1e-3)];
+    let rows = [("maximum pull over π w R", found / PI, 1.664_076_85, 1e-3)];
     Ok(Checked::new("sphere, exponential attraction, 12 cells in the zone", "axisymmetric computation, below", &rows))
 }
 
 pub fn dugdale() -> Outcome {
     let exact = MaugisDugdale::new(1.0, 1.0, 1.0, 1.0)?;
     let path = elastic(64, Dugdale::new(1.0, 1.0)?)?;
-    let rows = [("greatest pull over π w R", greatest_pull(&path) / PI, -exact.pull_off()[0] / PI, 3e-3)];
+    let rows = [("maximum pull over π w R", greatest_pull(&path) / PI, -exact.pull_off()[0] / PI, 3e-3)];
     let line = between(0.3, 2.05).map(|a| exact.state(a)).map(|[force, approach]| (approach, force)).collect();
     Ok(Checked::new("sphere, Dugdale's attraction, 8 cells in the zone", "Maugis 1992", &rows).drawn(
         ["approach / (R w² / E*²)^(1/3)", "force / w R"],
@@ -84,8 +84,8 @@ pub fn creeping() -> Outcome {
     let rows = [
         ("force at rest", relaxed.force(), 12.847_194, 2e-3),
         ("pull after 0.4924 τ at V = 1", -slow[4].1, 9.458, 1e-2),
-        ("greatest pull at V = 1", greatest_pull(&slow), 26.958, 1e-2),
-        ("greatest pull at V = 1000", greatest_pull(&fast), 33.078, 1e-2),
+        ("maximum pull at V = 1", greatest_pull(&slow), 26.958, 1e-2),
+        ("maximum pull at V = 1000", greatest_pull(&fast), 33.078, 1e-2),
     ];
     Ok(Checked::new("sphere pulled off a creeping body, 144² cells", "axisymmetric computation, below", &rows))
 }
@@ -110,8 +110,8 @@ pub fn opening_edge() -> Outcome {
     };
     let [slow, faster] = [row(0.01)?, row(0.03)?];
     let rows = [
-        ("greatest pull at V = 0.01 over the relaxed one", slow[0], slow[1], 4e-2),
-        ("greatest pull at V = 0.03 over the relaxed one", faster[0], faster[1], 4e-2),
+        ("maximum pull at V = 0.01 over the relaxed one", slow[0], slow[1], 4e-2),
+        ("maximum pull at V = 0.03 over the relaxed one", faster[0], faster[1], 4e-2),
     ];
     Ok(Checked::new(
         "sphere pulled off a creeping body, 128² cells",

@@ -86,7 +86,7 @@ pub fn opened_punch() -> Outcome {
         ("approach over its instantaneous value", end[0] / start[0], growth, 1e-4),
         ("tilt over its instantaneous value", end[1] / start[1], growth, 1e-4),
         ("contact area over its instantaneous value", end[2] / start[2], 1.0, 1e-4),
-        ("greatest pressure over its instantaneous value", end[3] / start[3], 1.0, 1e-4),
+        ("maximum pressure over its instantaneous value", end[3] / start[3], 1.0, 1e-4),
     ];
     Ok(Checked::new(
         "flat punch on a Zener body, force at 0.6 R, half open, held",
@@ -260,7 +260,7 @@ pub fn rolling() -> Outcome {
     let dots = along_x1(&contact).into_iter().map(|(x, p)| (x - axis, p));
     let dots = dots.filter(|(x, _)| x.abs() < 1e3 * 1.5 * relaxed).collect();
     let rows = [
-        ("greatest pressure", contact.fields().max_pressure(), exact.peak(), 1e-2),
+        ("maximum pressure", contact.fields().max_pressure(), exact.peak(), 1e-2),
         ("contact width", contact.contact_area(), ahead - behind, 1e-2),
         ("hysteretic friction", friction, exact.friction(scene.radius), 2e-2),
     ];

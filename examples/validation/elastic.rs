@@ -61,7 +61,7 @@ pub fn hertz() -> Outcome {
     let contact = pressed(grid, &Sphere::new(10.0e-3)?, Load::force(1.0))?;
     let rows = [
         ("approach", contact.approach(), exact.approach, 1e-4),
-        ("greatest pressure", contact.fields().max_pressure(), exact.max_pressure, 1e-3),
+        ("maximum pressure", contact.fields().max_pressure(), exact.max_pressure, 1e-3),
         ("contact area", contact.contact_area(), PI * exact.contact_radius.powi(2), 2e-3),
         ("stiffness over E*", contact.fields().stiffness_over_modulus()?, 2.0 * exact.contact_radius, 5e-3),
     ];
@@ -78,7 +78,7 @@ pub fn stress_below_a_ball() -> Outcome {
     let peak = stress.greatest(&depths, Stress::von_mises)?;
     let normal = stress.at(&[[0.0, 0.0, 2.0 * a]])?[0].s33;
     let rows = [
-        ("greatest von Mises stress", peak.value, 0.532_697 * exact.max_pressure, 1e-3),
+        ("maximum von Mises stress", peak.value, 0.532_697 * exact.max_pressure, 1e-3),
         ("its depth", peak.position[2], 0.547_87 * a, 2e-3),
         ("σ33 on the axis at z = 2 a", normal, -0.2 * exact.max_pressure, 1e-3),
     ];
@@ -92,7 +92,7 @@ pub fn hertz_ellipse() -> Outcome {
     let contact = pressed(grid, &Ellipsoid::new(20.0e-3, 5.0e-3)?, Load::force(1.0))?;
     let rows = [
         ("approach", contact.approach(), exact.approach, 2e-4),
-        ("greatest pressure", contact.fields().max_pressure(), exact.max_pressure, 4e-4),
+        ("maximum pressure", contact.fields().max_pressure(), exact.max_pressure, 4e-4),
         ("contact area", contact.contact_area(), PI * a1 * a2, 5e-3),
     ];
     Ok(Checked::new("ellipsoid 4 : 1, 192 × 128 cells", "Hertz 1882", &rows))
@@ -128,7 +128,7 @@ pub fn wavy() -> Outcome {
         (1e3 * x, 1e-3 * 2.0 * mean * c / share * (share - s * s).max(0.0).sqrt())
     });
     let rows = [
-        ("greatest pressure", contact.fields().max_pressure(), 2.0 * mean / share.sqrt(), 5e-3),
+        ("maximum pressure", contact.fields().max_pressure(), 2.0 * mean / share.sqrt(), 5e-3),
         ("contact width", contact.contact_area(), 2.0 * share.sqrt().asin() / PI * wavelength, 5e-3),
     ];
     Ok(Checked::new("wavy surface, periodic, plane strain, 512 cells", "Westergaard 1939", &rows).drawn(
@@ -152,7 +152,7 @@ pub fn line() -> Outcome {
     let approach = per_length / (PI * E_STAR) * (2.0 * (2.0 / half_width).ln() + 1.0);
     let rows = [
         ("half-width", 0.5 * contact.contact_area(), half_width, 5e-3),
-        ("greatest pressure", contact.fields().max_pressure(), 2.0 * per_length / (PI * half_width), 1e-3),
+        ("maximum pressure", contact.fields().max_pressure(), 2.0 * per_length / (PI * half_width), 1e-3),
         ("approach to a datum", contact.approach(), approach, 1e-3),
     ];
     Ok(Checked::new("cylinder in line contact, 512 cells", "Hertz; Johnson 1985, 4.2 and 5.6", &rows))

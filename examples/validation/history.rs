@@ -108,7 +108,7 @@ pub fn cone() -> Outcome {
     let withdrawn = |t: f64| t - 2_f64.powf(1.0 / (1.0 - beta)) * (t - 1.0);
     let share = |t: f64| t.powf(2.0 - beta) - 2.0 * (t - 1.0).powf(1.0 - beta) * ((1.0 - beta) * withdrawn(t) + t);
     let rows = [
-        ("force at the greatest depth", greatest, exact_greatest, 1e-3),
+        ("force at the maximum depth", greatest, exact_greatest, 1e-3),
         ("force on the way out over that", contact.force() / greatest, share(end), 1e-3),
         ("contact radius on the way out", (contact.contact_area() / PI).sqrt(), radius(withdrawn(end)), 4e-3),
     ];
@@ -198,7 +198,7 @@ pub fn direct_sums() -> Outcome {
     let rows = [
         ("K p in the middle, after any steps", potential[middle], summed, 1e-8),
         ("approach", own[0], limit(0), 1e-4),
-        ("greatest pressure", own[1], limit(1), 1e-3),
+        ("maximum pressure", own[1], limit(1), 1e-3),
     ];
     Ok(Checked::new(
         "sphere on a body of three retardation times, forces at random, 64² cells",
