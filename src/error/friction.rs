@@ -1,4 +1,5 @@
 use crate::error::ErrorKind;
+use crate::load::Load;
 use crate::rounded::{TIME, rounded};
 
 /// Errors of contacts with friction in space.
@@ -28,6 +29,25 @@ pub enum FrictionError {
         /// What is allowed.
         tolerance: f64,
     },
+
+    /// A force along the surface in a run is more than friction carries.
+    #[error(
+        "at t = {} s the load along the surface is {} times what friction carries: the body slides along {direction:?}; \
+        give less, or prescribe its motion", rounded(*.time, TIME), rounded(*.over_limit, 5))]
+    Slides {
+        /// End of the step \[s\].
+        time: f64,
+        /// Shifts and twist of the sliding motion, of the largest component 1.
+        direction: [f64; 3],
+        /// The forces over what is carried in their ratio.
+        over_limit: f64,
+    },
+
+    /// A load along the surface that is neither a force nor a displacement.
+    #[error(
+        "a load along the surface is a force (Load::force) or a displacement (Load::approach) without tilt, not {0}"
+    )]
+    OtherLoad(Load),
 }
 
 impl FrictionError {
@@ -35,6 +55,8 @@ impl FrictionError {
         match self {
             FrictionError::OtherBodies => ErrorKind::Unsupported,
             FrictionError::NotConverged { .. } => ErrorKind::Convergence,
+            FrictionError::Slides { .. } => ErrorKind::Value,
+            FrictionError::OtherLoad(_) => ErrorKind::Value,
         }
     }
 }

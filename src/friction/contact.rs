@@ -4,10 +4,11 @@ use std::sync::Arc;
 
 use crate::contact::{Builder, Snapshot, StepError, StepReport, TimeRule, ViscoelasticContact};
 use crate::error::{Error, FrictionError, Result, Special, UserError};
+use crate::friction::history::ShearHistory;
 use crate::friction::kernel::{TangentialKernel, TangentialResponse};
 use crate::friction::limit::FrictionLimit;
 use crate::friction::load::{Component, LARGEST, ShearLoad};
-use crate::friction::newton::Work;
+use crate::friction::newton::{NEGLIGIBLE, Work};
 use crate::friction::problem::{Cell, Problem, Solution, take_motion};
 use crate::friction::region::{Rectangle, extent};
 use crate::hereditary::{GroupHistory, Interpolant};
@@ -16,6 +17,9 @@ use crate::solver::RigidMotion;
 
 /// Loads beyond what friction carries by less than this part are carried: rounding.
 const ROUNDING: f64 = 1e-9;
+
+/// The most accurate solver of a run.
+const MOST_ACCURATE: f64 = 1e-11;
 
 /// A contact that is pressed and sheared.
 ///
@@ -56,6 +60,13 @@ pub struct FrictionContact {
     motion: [f64; 3],
     force: [f64; 3],
     work: [f64; 2],
+    /// The part of what friction carries that the prescribed forces take.
+    load_share: f64,
+    /// Maximum of the motion and of the force so far.
+    pub(super) largest: [f64; 2],
+    /// Differences between outcomes of a step, over that maximum, that a run does not resolve.
+    pub(super) unresolved: f64,
+    pub(super) history_along: Option<ShearHistory>,
 }
 
 /// What a step needs, on the rectangle but for the gap.
@@ -137,6 +148,10 @@ impl FrictionContact {
             motion: [0.0; 3],
             force: [0.0; 3],
             work: [0.0; 2],
+            load_share: 0.0,
+            largest: [0.0; 2],
+            unresolved: 0.0,
+            history_along: None,
         })
     }
 
@@ -172,6 +187,12 @@ impl FrictionContact {
     /// Where the body is.
     fn placed(&self) -> RigidMotion {
         self.normal.computation.state.held.current.motions[0]
+    }
+
+    /// Solves further steps to this tolerance, if it is less than that of the settings.
+    pub(super) fn solve_to(&mut self, tolerance: f64) {
+        let settings = &mut Arc::make_mut(&mut self.normal.scene).ground.settings;
+        settings.tolerance = settings.tolerance.min(tolerance.max(MOST_ACCURATE));
     }
 
     /// Takes the step along the surface, after that of the normal contact; `closed` tells by how much the body came
@@ -229,6 +250,15 @@ impl FrictionContact {
             motion[k] = if let Component::Motion(to) = shear.components[k] { to } else { motion[k] + change[k] };
             self.force[k] = area * problem.carried(k, &trial.traction);
             self.work[0] += 0.5 * (before[k] + self.force[k]) * change[k];
+        }
+        self.load_share = 1.0 / factor;
+        // what friction could cause
+        let (carried, count) = (problem.reach(0), problem.touching().count().max(1) as f64);
+        let could = [compliance * side * carried / count.sqrt(), area * carried];
+        let arm = self.normal.fields().contact_area().sqrt();
+        let now = [size(*motion, arm), size(self.force, arm.recip())];
+        for k in 0..2 {
+            self.largest[k] = self.largest[k].max(now[k]).max(NEGLIGIBLE * could[k]);
         }
         let mean = trial.traction.iter().zip(&solution.traction).zip(&trial.gradient);
         self.work[1] -= area * mean.map(|((now, before), g)| 0.5 * (now + before) * g).sum::<f64>();
@@ -311,6 +341,12 @@ impl FrictionContact {
         self.work
     }
 
+    /// The part of what friction can carry that the forces prescribed in the last step take: the body slides beyond 1.
+    /// 0 where motions are prescribed alone.
+    pub fn load_share(&self) -> f64 {
+        self.load_share
+    }
+
     /// Number of cells that stick.
     pub fn stick_cells(&self) -> usize {
         self.solution.cells.iter().filter(|cell| **cell == Cell::Stick).count()
@@ -343,6 +379,11 @@ impl FrictionContact {
             whole
         })
     }
+}
+
+/// A motion as a length, or a force: angles times the arm, torques over it; nothing of bodies without contact.
+pub(super) fn size(of: [f64; 3], arm: f64) -> f64 {
+    of[0].hypot(of[1]).hypot(if arm.is_finite() { arm * of[2] } else { 0.0 })
 }
 
 fn not_a_limit(value: f64) -> Error {

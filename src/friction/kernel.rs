@@ -17,6 +17,9 @@ use num_complex::Complex64;
 use crate::Grid;
 use crate::error::{FrictionError, Result};
 use crate::fft::RealPlane;
+use crate::friction::operator::Operator;
+use crate::friction::preconditioner::Preconditioner;
+use crate::friction::problem::Cell;
 use crate::kernel::{HalfSpace, InfluenceKernel, fast_length, wave_number};
 use crate::quadrature::GaussLegendre;
 
@@ -107,45 +110,11 @@ impl TangentialResponse {
     }
 }
 
-/// A convolution of two components with real spectra, on a rectangle of cells.
-#[derive(Debug, Clone)]
-struct Operator {
-    cells: [usize; 2],
-    plane: RealPlane,
-    /// xx, yy and xy of each coefficient, over the number of values.
-    spectrum: Vec<[f64; 3]>,
-    work: [Vec<Complex64>; 2],
-}
-
-impl Operator {
-    fn new(cells: [usize; 2], mut plane: RealPlane, of: impl FnOnce(&mut RealPlane) -> Vec<[f64; 3]>) -> Operator {
-        let mut spectrum = of(&mut plane);
-        let scale = 1.0 / plane.periods().iter().product::<usize>() as f64;
-        spectrum.iter_mut().flatten().for_each(|value| *value *= scale);
-        let work = [(); 2].map(|()| vec![Complex64::ZERO; plane.coefficients()]);
-        Operator { cells, plane, spectrum, work }
-    }
-
-    /// out ← K field; both hold the components one after the other.
-    fn apply(&mut self, field: &[f64], out: &mut [f64]) {
-        let Operator { cells: [_, columns], plane, spectrum, work: [first, second] } = self;
-        let (one, two) = field.split_at(field.len() / 2);
-        plane.forward(one.chunks_exact(*columns), first);
-        plane.forward(two.chunks_exact(*columns), second);
-        for ((one, two), &[xx, yy, xy]) in first.iter_mut().zip(second.iter_mut()).zip(&*spectrum) {
-            (*one, *two) = (xx * *one + xy * *two, xy * *one + yy * *two);
-        }
-        let (one, two) = out.split_at_mut(field.len() / 2);
-        plane.inverse(first, one.chunks_exact_mut(*columns));
-        plane.inverse(second, two.chunks_exact_mut(*columns));
-    }
-}
-
 /// K on a rectangle of cells, and an approximate inverse of it.
 #[derive(Debug, Clone)]
 pub(super) struct TangentialKernel {
     operator: Operator,
-    inverse: Operator,
+    preconditioner: Preconditioner,
     /// Axes along which the body ends.
     ends: [bool; 2],
     /// Number of applications of each so far.
@@ -197,14 +166,15 @@ impl TangentialKernel {
             spectrum
         });
         let closed = [0, 1].map(|axis| if periodic[axis] { cells[axis] } else { fast_length(cells[axis]) });
-        let inverse = Operator::new(cells, RealPlane::new(closed), |_| {
+        let inverse = Operator::new(closed, RealPlane::new(closed), |_| {
             // the mean is as stiff as half of the longest wave, along both axes alike
             let longest =
                 (0..2).filter(|&axis| closed[axis] > 1).map(|axis| wave_number(1, closed[axis], spacing[axis]));
             let mean = 0.25 * longest.fold(4.0 / response.self_influence(), f64::min);
             waves(closed, &|q| if q == [0.0; 2] { [mean, mean, 0.0] } else { response.inverse_of_wave(q) })
         });
-        TangentialKernel { operator, inverse, ends: [0, 1].map(ends), applications: [0; 2] }
+        let preconditioner = Preconditioner::new(inverse, cells);
+        TangentialKernel { operator, preconditioner, ends: [0, 1].map(ends), applications: [0; 2] }
     }
 
     /// out ← K traction.
@@ -213,17 +183,22 @@ impl TangentialKernel {
         self.operator.apply(traction, out);
     }
 
-    /// out ← M residual, M ≈ K⁻¹.
-    pub(super) fn apply_inverse(&mut self, residual: &[f64], out: &mut [f64]) {
+    /// Fits the preconditioner to a Newton step.
+    pub(super) fn fit(&mut self, cells: &[Cell], curvature: &[f64], compliance: f64) {
+        self.preconditioner.fit(cells, curvature, compliance);
+    }
+
+    /// out ← what the preconditioner makes of a residual.
+    pub(super) fn precondition(&mut self, residual: &[f64], out: &mut [f64], cells: &[Cell], normals: &[[f64; 2]]) {
         self.applications[1] += 1;
-        self.inverse.apply(residual, out);
+        self.preconditioner.apply(residual, out, cells, normals);
     }
 
     /// The work of all applications, in convolutions of one component on a grid of so many cells.
     pub(super) fn equivalents(&self, cells: [usize; 2]) -> f64 {
         let periods = [0, 1].map(|axis| if self.ends[axis] { fast_length(2 * cells[axis] - 1) } else { cells[axis] });
         let whole = periods.iter().product::<usize>() as f64;
-        let each = [&self.operator, &self.inverse].map(|own| own.plane.periods().iter().product::<usize>() as f64);
+        let each = [self.operator.plane.periods().iter().product(), self.preconditioner.values()].map(|n| n as f64);
         2.0 * (0..2).map(|k| self.applications[k] as f64 * each[k] / whole).sum::<f64>()
     }
 }

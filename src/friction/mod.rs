@@ -11,16 +11,22 @@
 
 mod by_motion;
 mod contact;
+mod history;
 mod kernel;
 mod limit;
 mod load;
+mod modes;
 mod newton;
+mod operator;
+mod preconditioner;
 mod problem;
 mod region;
+mod run;
 mod secant;
 mod sliding_limit;
 
 pub use contact::{FrictionContact, FrictionReport, Outcome};
+pub use history::ShearHistory;
 pub use limit::{Coulomb, FrictionLimit, Lesser, Tresca};
 pub use load::{Component, ShearLoad};
 

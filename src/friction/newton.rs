@@ -1,9 +1,9 @@
 //! Newton's method for the problem of a step.
 
 use crate::friction::kernel::TangentialKernel;
+use crate::friction::modes::{Modes, add, inner};
 use crate::friction::problem::{Cell, Problem, Solution, dot};
 use crate::friction::secant::Secant;
-use crate::linalg;
 
 /// Buffers of the solver.
 #[derive(Debug, Clone, Default)]
@@ -17,9 +17,7 @@ pub(super) struct Work {
     preconditioned: Vec<f64>,
     direction: Vec<f64>,
     image: Vec<f64>,
-    /// Free parts of the modes, and what M makes of them.
-    modes: [Vec<f64>; 3],
-    answers: [Vec<f64>; 3],
+    modes: Modes,
     /// Of the multipliers, in the Newton step found last, and which cells began to slip in it.
     change: [f64; 3],
     began: Vec<bool>,
@@ -30,14 +28,13 @@ pub(super) struct Work {
 
 impl Work {
     pub(super) fn resize(&mut self, n: usize) {
-        let Work {
-            stress, normals, curvature, step, residual, preconditioned, direction, image, modes, answers, ..
-        } = self;
+        let Work { stress, normals, curvature, step, residual, preconditioned, direction, image, modes, .. } = self;
+        modes.resize(n);
         normals.resize(n, [0.0; 2]);
         self.began.resize(n, false);
         curvature.resize(n, 0.0);
-        let fields = [stress, step, residual, preconditioned, direction, image].into_iter().chain(modes).chain(answers);
-        fields.for_each(|field| field.resize(2 * n, 0.0));
+        let fields = [stress, step, residual, preconditioned, direction, image];
+        fields.into_iter().for_each(|field| field.resize(2 * n, 0.0));
     }
 }
 
@@ -59,9 +56,11 @@ const FORCING: f64 = 0.1;
 /// Conjugate gradients in a Newton step.
 const MOST_GRADIENTS: usize = 150;
 /// Displacements below this part of what friction could cause are not resolved further.
-const NEGLIGIBLE: f64 = 1e-3;
-/// What is left of a residual by rounding, in its square.
-const NOTHING: f64 = 1e-24;
+pub(super) const NEGLIGIBLE: f64 = 1e-3;
+/// What is left of a residual by rounding.
+const NOTHING: f64 = 1e-12;
+/// Stiffness, over that of a cell, below which there is none.
+const UNRESISTED: f64 = 1e-9;
 /// Part of the tolerance beyond which a cell that would slip backwards sticks.
 const BACKWARDS: f64 = 1e-2;
 
@@ -106,7 +105,8 @@ impl Solution {
             problem.touching().fold((0.0_f64, 0), |(r, count), i| (r.max(problem.bound[i]), count + 1));
         let least = NEGLIGIBLE * problem.compliance * largest * problem.side * f64::from(count).sqrt();
         let mut outcome = Outcome::default();
-        work.secant = None;
+        (work.secant, work.changed) = (None, false);
+        work.began.fill(false);
         let sizes = [0, 1, 2].map(|k| problem.size(k));
         for iteration in 0..=MOST_STEPS {
             kernel.apply(&self.traction, &mut work.stress);
@@ -130,10 +130,12 @@ impl Solution {
                 work.changed = true;
                 continue;
             }
-            if iteration > 0 {
-                self.let_stick(problem, work, BACKWARDS * tolerance * scale);
-            }
-            if !self.advance(problem, kernel, gaps, work) {
+            self.let_stick(problem, work, BACKWARDS * tolerance * scale);
+            // what is beyond reach while the sets change, or would be beyond what is asked, is left
+            let forcing =
+                if work.changed { 2.0 * FORCING } else { FORCING.min(residual.max(0.3 * tolerance / residual)) };
+            let gaps = if balance <= 0.3 * tolerance { [0.0; 3] } else { gaps };
+            if !self.advance(problem, kernel, (gaps, forcing), work) {
                 break;
             }
             self.move_by(problem, work);
@@ -212,108 +214,66 @@ impl Solution {
         &mut self,
         problem: &Problem<'_>,
         kernel: &mut TangentialKernel,
-        gaps: [f64; 3],
+        (gaps, forcing): ([f64; 3], f64),
         work: &mut Work,
     ) -> bool {
-        let n = problem.cells();
-        for k in problem.driven() {
-            let Work { modes, answers, normals, .. } = work;
-            modes[k].fill(0.0);
-            problem.touching().for_each(|i| {
-                let mode = problem.mode(k, i);
-                (modes[k][i], modes[k][n + i]) = (mode[0], mode[1]);
-            });
-            self.restrict(normals, &mut modes[k]);
-            self.precondition(problem, kernel, &modes[k], &mut answers[k], normals);
-        }
-        let Work { step, residual, preconditioned, direction, image, modes, answers, normals, curvature, .. } = work;
-        let driven: Vec<usize> = problem.driven().collect();
-        let is_driven = |k: usize| problem.wanted[k].is_some();
-        let gram: [[f64; 3]; 3] = std::array::from_fn(|a| {
-            std::array::from_fn(|b| if is_driven(a) && is_driven(b) { inner(&modes[a], &answers[b]) } else { 0.0 })
-        });
-        let solve = |right: [f64; 3]| linalg::solve_normal_equations(&gram, right, 1e-13);
-        // x = Σ a_k W_k meets the loads; what follows stays in the null space
-        let parts = solve(gaps);
+        let Work { step, residual, preconditioned, direction, image, modes, normals, curvature, .. } = work;
+        kernel.fit(&self.cells, curvature, problem.compliance);
+        modes.fit(problem, |field| self.restrict(normals, field));
         step.fill(0.0);
-        driven.iter().for_each(|&k| add(step, parts[k], &answers[k]));
         residual.iter_mut().zip(&self.gradient).for_each(|(r, g)| *r = -g);
         self.restrict(normals, residual);
-        if driven.iter().any(|&k| parts[k] != 0.0) {
+        if gaps != [0.0; 3] {
+            // meets the loads; what follows stays in the null space
+            modes.meet(gaps, step, |mode, out| kernel.precondition(mode, out, &self.cells, normals));
             self.operate(problem, kernel, step, image, (normals, curvature));
             add(residual, -1.0, image);
         }
-        // takes B ν out of a residual, and adds ν to what was taken before
-        let mut multipliers = [0.0; 3];
-        let mut project = |kernel: &mut TangentialKernel, residual: &mut [f64], out: &mut Vec<f64>| {
-            self.precondition(problem, kernel, residual, out, normals);
-            let along = [0, 1, 2].map(|k| if is_driven(k) { inner(&modes[k], out) } else { 0.0 });
-            let taken = solve(along);
-            for &k in &driven {
-                add(out, -taken[k], &answers[k]);
-                add(residual, -taken[k], &modes[k]);
-                multipliers[k] += taken[k];
-            }
-            (0..3).map(|k| along[k] * taken[k]).sum::<f64>()
-        };
-        let carried = project(kernel, residual, preconditioned);
-        direction.copy_from_slice(preconditioned);
-        let mut size = inner(residual, preconditioned);
-        if size <= NOTHING * carried {
-            // the loads leave nothing free
-            size = 0.0;
-        }
-        let first = size;
-        for _ in 0..MOST_GRADIENTS {
-            if size <= 0.0 || size.is_nan() {
-                break;
-            }
-            self.operate(problem, kernel, direction, image, (normals, curvature));
-            let length = size / inner(direction, image);
-            if !length.is_finite() {
-                return false;
-            }
-            add(step, length, direction);
-            add(residual, -length, image);
-            project(kernel, residual, preconditioned);
+        let whole = largest(residual);
+        let mut multipliers = modes.project(residual);
+        let first = largest(residual);
+        let mut size = f64::INFINITY;
+        direction.fill(0.0);
+        // if the loads leave nothing free, what is left is rounding
+        let most = if first <= NOTHING * whole { 0 } else { MOST_GRADIENTS };
+        for _ in 0..most {
+            kernel.precondition(residual, preconditioned, &self.cells, normals);
+            modes.project(preconditioned);
             let next = inner(residual, preconditioned);
-            if next < FORCING * FORCING * first {
+            if next <= 0.0 || next.is_nan() {
                 break;
             }
             direction.iter_mut().zip(&*preconditioned).for_each(|(p, z)| *p = z + next / size * *p);
             size = next;
+            self.operate(problem, kernel, direction, image, (normals, curvature));
+            let resists = inner(direction, image);
+            if !resists.is_finite() {
+                return false;
+            }
+            // the mean of a periodic body that sticks to all of another one: on to the circles
+            if resists <= UNRESISTED * problem.compliance * problem.side * inner(direction, direction) {
+                add(step, 2.0 * largest(problem.bound) / largest(direction), direction);
+                break;
+            }
+            let length = size / resists;
+            add(step, length, direction);
+            add(residual, -length, image);
+            let taken = modes.project(residual);
+            (0..3).for_each(|k| multipliers[k] += taken[k]);
+            if largest(residual) <= forcing * first {
+                break;
+            }
         }
         // the step leaves −B ν of the gradient. A further motion takes a B Δd of it, which is B P Δd as far as the loads
-        // feel it: by M at first, then as the steps show (Broyden), while the same cells slip
-        let met: [[f64; 3]; 3] = std::array::from_fn(|a| {
-            std::array::from_fn(|b| {
-                let share =
-                    |i: usize| problem.entered[i] * (answers[a][i] * modes[b][i] + answers[a][n + i] * modes[b][n + i]);
-                if is_driven(a) && is_driven(b) { (0..n).map(share).sum() } else { 0.0 }
-            })
-        });
+        // feel it: by BᵀB at first, then as the steps show (Broyden), while the same cells slip
         let left = multipliers.map(|value| -value);
-        let mut secant = work.secant.unwrap_or_else(|| Secant::new(|b| solve([0, 1, 2].map(|a| met[a][b]))));
+        let mut secant = work.secant.unwrap_or_else(|| Secant::new(modes.felt(problem.entered)));
         if !work.changed && work.secant.is_some() {
             secant.learn(left);
         }
         work.change = secant.motion(left);
         (work.secant, work.changed) = (Some(secant), false);
         true
-    }
-
-    /// M, restricted to what cells are free to do.
-    fn precondition(
-        &self,
-        problem: &Problem<'_>,
-        kernel: &mut TangentialKernel,
-        field: &[f64],
-        out: &mut [f64],
-        normals: &[[f64; 2]],
-    ) {
-        kernel.apply_inverse(field, out);
-        self.restrict(normals, out);
-        out.iter_mut().for_each(|value| *value /= problem.compliance);
     }
 
     /// c K, restricted, and the curvature of the circles.
@@ -336,10 +296,6 @@ impl Solution {
     }
 }
 
-fn inner(a: &[f64], b: &[f64]) -> f64 {
-    crate::dense::product(a, b)
-}
-
-fn add(to: &mut [f64], factor: f64, field: &[f64]) {
-    to.iter_mut().zip(field).for_each(|(to, value)| *to += factor * value);
+fn largest(field: &[f64]) -> f64 {
+    field.iter().fold(0.0_f64, |most, value| most.max(value.abs()))
 }

@@ -11,8 +11,7 @@ pub(super) struct Secant {
 }
 
 impl Secant {
-    pub(super) fn new(column: impl Fn(usize) -> [f64; 3]) -> Secant {
-        let columns = [0, 1, 2].map(column);
+    pub(super) fn new(columns: [[f64; 3]; 3]) -> Secant {
         let matrix = std::array::from_fn(|a| std::array::from_fn(|b| columns[b][a]));
         Secant { matrix, left: [0.0; 3], change: [0.0; 3] }
     }

@@ -43,7 +43,7 @@ pub(super) fn adaptive_step(
         let (state, control) = (&computation.state, &mut *search.control);
         let proposal = control.propose(scene, state, histories, until - now, search.stop, search.tried)?;
         let time = proposal.time;
-        histories.loads(&mut loads, |history| history.checked_before(time, contact.attracts()))?;
+        histories.loads(&mut loads, contact, |history, pulls| history.checked_before(time, pulls))?;
         let mut step = contact.request(time, time - now, &loads, tolerance)?;
         step.cancelled = course.cancelled;
         (search.tried, search.dt) = (time, step.interval.dt);

@@ -342,9 +342,7 @@ impl<'a, C: Contact> Run<'a, C> {
         self.stepping.validate_run(self.progress.start, self.until)?;
         let Run { contact, histories, loads, until, progress, control, cancelled, known, .. } = self;
         let (now, until) = (contact.time(), *until);
-        let attracts = contact.attracts();
-        histories.loads(loads, |history| history.checked_at(now, attracts))?;
-        loads.extend(contact.lateral().map(|along| along.checked_at(now, true)).transpose()?);
+        histories.loads(loads, &**contact, |history, pulls| history.checked_at(now, pulls))?;
         let jumps = !control.bears(contact, loads);
         if !jumps && now >= until {
             return Ok(None);
@@ -365,8 +363,7 @@ impl<'a, C: Contact> Run<'a, C> {
             _ if jumps => Some(now),
             Stepping::Fixed { dt } => {
                 let time = progress.next_time(now, dt, stop)?;
-                histories.loads(loads, |history| history.checked_before(time, attracts))?;
-                loads.extend(contact.lateral().map(|along| along.checked_before(time, true)).transpose()?);
+                histories.loads(loads, &**contact, |history, pulls| history.checked_before(time, pulls))?;
                 Some(time)
             }
             Stepping::Adaptive { .. } => None,

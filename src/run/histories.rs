@@ -1,8 +1,10 @@
 //! The load histories that a run follows.
 
+use std::sync::Arc;
+
 use crate::error::{LoadError, Result};
 use crate::load::{Load, LoadHistory};
-use crate::run::OwnedOrBorrowed;
+use crate::run::{Contact, OwnedOrBorrowed};
 
 /// The load history of a body. The owned one borrows nothing: after its last use a run no longer borrows its contact,
 /// even before the run is dropped.
@@ -39,18 +41,22 @@ impl<'a> Histories<'a> {
         1 + self.others.len()
     }
 
-    /// Puts a load of each into `loads`.
-    pub(super) fn loads(&self, loads: &mut Vec<Load>, load: impl Fn(&dyn LoadHistory) -> Result<Load>) -> Result<()> {
+    /// Puts a load of each into `loads`, those along the surface of the contact last; `load` learns whether it may pull.
+    pub(super) fn loads<C: Contact>(
+        &self,
+        loads: &mut Vec<Load>,
+        contact: &C,
+        load: impl Fn(&dyn LoadHistory, bool) -> Result<Load>,
+    ) -> Result<()> {
         loads.clear();
-        self.each().try_for_each(|history| {
-            loads.push(load(history)?);
-            Ok(())
-        })
+        let along = contact.lateral().iter().map(|along| (&**along, true));
+        let mut all = self.each().map(|history| (history, contact.attracts())).chain(along);
+        all.try_for_each(|(history, pulls)| load(history, pulls).map(|load| loads.push(load)))
     }
 
     /// The first breakpoint of any after `now`, those of what acts along the surface too; infinite if there is none.
-    pub(super) fn next_breakpoint(&self, now: f64, along: Option<&dyn LoadHistory>) -> Result<f64> {
-        self.each().chain(along).try_fold(f64::INFINITY, |first, history| {
+    pub(super) fn next_breakpoint(&self, now: f64, along: &[Arc<dyn LoadHistory>]) -> Result<f64> {
+        self.each().chain(along.iter().map(|along| &**along)).try_fold(f64::INFINITY, |first, history| {
             let next = history.next_breakpoint(now).unwrap_or(f64::INFINITY);
             if next <= now || next.is_nan() {
                 return Err(LoadError::InvalidBreakpoint { after: now, breakpoint: next }.into());

@@ -57,9 +57,10 @@ pub use samples::Sample;
 
 use std::fmt::Debug;
 use std::ops::{Deref, DerefMut};
+use std::sync::Arc;
 
 use crate::contact::{Estimated, Figures, StepReport, Warnings};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::fields::Fields;
 use crate::load::{Load, LoadHistory};
 use crate::rheology::TemperatureHistory;
@@ -263,14 +264,21 @@ pub trait Contact: Clone + Debug + Send + Sync + 'static {
 
     /// What acts along the surface besides the load.
     #[doc(hidden)]
-    fn lateral(&self) -> Option<&dyn LoadHistory> {
-        None
+    fn lateral(&self) -> &[Arc<dyn LoadHistory>] {
+        &[]
     }
 
     /// The approach at which the upright bodies touch \[m\], if they never have.
     #[doc(hidden)]
     fn untouched(&self) -> Option<f64> {
         None
+    }
+
+    /// Whether a step failed with this error since its load is more than the contact can bear: a shorter step may not
+    /// come so far.
+    #[doc(hidden)]
+    fn is_beyond(&self, _error: &Error) -> bool {
+        false
     }
 
     /// Fails if the material of bodies that touch is not known until the end of a run.

@@ -18,7 +18,7 @@ mod trace;
 
 pub(crate) use active_set::ActiveSet;
 pub(crate) use bands::Bands;
-pub(crate) use extension::{Extension, HaloExchange, HaloRows};
+pub(crate) use extension::{Extension, ExtensionKind, HaloExchange, HaloRows};
 pub(crate) use outcome::{Outcome, PENETRATION_SLACK};
 pub(crate) use problem::{Counts, Problem, Solution, Solve, Stop};
 pub(crate) use rigid_motion::{Freedom, Gram, ModeCoefficients, Modes, RigidMotion, dot};
@@ -28,7 +28,7 @@ pub(crate) use stiffness::{FLAT_PUNCH_TOLERANCE, flat_punch};
 use bands::BandSums;
 use cold_start::{balance, cold_start, make_feasible, press_everywhere};
 use contact_set::ContactSet;
-use extension::{Attenuation, ExtensionKind};
+use extension::Attenuation;
 use outcome::ResidualSums;
 use passes::{Passes, Search, add};
 use preconditioner::Preconditioner;

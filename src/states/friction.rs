@@ -144,8 +144,8 @@ impl StatesContact {
     }
 
     /// What acts along the surface.
-    pub(super) fn lateral_history(&self) -> Option<&dyn LoadHistory> {
-        self.scene.friction.as_ref()?.history.as_deref()
+    pub(super) fn lateral_history(&self) -> &[Arc<dyn LoadHistory>] {
+        self.scene.friction.as_ref().map_or(&[], |friction| friction.history.as_slice())
     }
 
     /// [`StatesContact::step`] with a load along the surface, as those of [`StatesContact::sheared_by`].

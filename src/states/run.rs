@@ -1,7 +1,9 @@
 //! Runs of contacts on elastic states.
 
+use std::sync::Arc;
+
 use crate::contact::StepReport;
-use crate::error::Result;
+use crate::error::{Error, Result, StatesError};
 use crate::load::{Load, LoadHistory};
 use crate::rheology::TemperatureHistory;
 use crate::run::control::Control;
@@ -77,12 +79,16 @@ impl Contact for StatesContact {
         self.scene.temperature.as_ref()
     }
 
-    fn lateral(&self) -> Option<&dyn LoadHistory> {
+    fn lateral(&self) -> &[Arc<dyn LoadHistory>] {
         self.lateral_history()
     }
 
     fn untouched(&self) -> Option<f64> {
         (self.groups() == 0).then(|| self.states().approach(0.0))
+    }
+
+    fn is_beyond(&self, error: &Error) -> bool {
+        matches!(error, Error::States(StatesError::Slides { .. }))
     }
 
     fn is_known_until(&self, end: f64) -> Result<()> {

@@ -7,4 +7,5 @@ pub(crate) mod kept;
 mod runs;
 mod space;
 mod space_known;
+mod space_runs;
 mod steps;

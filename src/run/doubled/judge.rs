@@ -135,7 +135,7 @@ pub(crate) struct Record<J> {
     pub(crate) greatest_load: f64,
     /// The same of what acts along the surface.
     pub(in crate::run) bends_along: Vec<f64>,
-    pub(in crate::run) greatest_along: f64,
+    pub(in crate::run) greatest_along: [f64; 3],
     /// Loads below this one are lost in rounding.
     pub(crate) least_load: f64,
     /// Maximum error of an adaptive step.
@@ -148,8 +148,8 @@ impl<J> Record<J> {
     /// Whether a run can continue with these values; a damaged file may hold any.
     #[cfg(feature = "checkpoint")]
     pub(crate) fn fits(&self) -> bool {
-        let loads = [self.greatest_load, self.greatest_along, self.least_load];
-        let sizes = [&[self.next][..], &self.greatest, &loads].concat();
+        let sizes =
+            [&[self.next, self.greatest_load, self.least_load][..], &self.greatest, &self.greatest_along].concat();
         let times = self.bends.iter().flatten().chain(&self.bends_along).copied();
         sizes.iter().all(|&size| size >= 0.0)
             && times.chain([self.start, self.until, self.next, self.corner]).all(f64::is_finite)
@@ -175,13 +175,15 @@ impl<J> Record<J> {
         self.greatest_load = loads.iter().fold(0.0, |most, load| load.1.max(most));
         // of forces or of depths
         self.least_load = if forces != others { f64::EPSILON * self.greatest_load } else { 0.0 };
-        if let Some(along) = contact.lateral() {
-            let looks = looks(along, contact.time(), self.until, true);
+        self.bends_along.clear();
+        for (along, greatest) in contact.lateral().iter().zip(&mut self.greatest_along) {
+            let looks = looks(&**along, contact.time(), self.until, true);
             let pairs = looks.map(|look| look.map(|(time, [before, at])| [(time, before.main()), (time, at.main())]));
             let seen = pairs.collect::<Result<Vec<_>>>()?.concat();
-            (self.bends_along, self.greatest_along) =
-                (bends(&seen), seen.iter().fold(0.0, |most, (_, load)| load.abs().max(most)));
+            self.bends_along.extend(bends(&seen));
+            *greatest = seen.iter().fold(0.0, |most, (_, load)| load.abs().max(most));
         }
+        self.bends_along.sort_by(f64::total_cmp);
         J::look(self, &loads);
         Ok(())
     }

@@ -131,7 +131,15 @@ impl<C: Contact, J: Judge<C>> Doubled<C, J> {
             let event = turn.or(event);
             end = event.unwrap_or(end);
             let span = Span { now, end };
-            let report = self.try_both(contact, history, span, cancelled)?;
+            let report = match self.try_both(contact, history, span, cancelled) {
+                // up to where the load becomes too much for the contact
+                Err(error) if contact.is_beyond(&error) && end - now > 0.1 * tolerance * (end - self.record.start) => {
+                    self.record.rejected += 1;
+                    length = 0.5 * (end - now);
+                    continue;
+                }
+                report => report?,
+            };
             let error = J::error(&self.record, contact, &mut self.tries, history, span, &report)?;
             let order = if is_first { 1.0 } else { order(last, (end - now, error), J::ORDER) };
             let (aim, most) = (J::aim(&self.record, contact, span), if error > 0.0 { longest } else { MAX_GROWTH });
@@ -160,14 +168,17 @@ impl<C: Contact, J: Judge<C>> Doubled<C, J> {
         // deviations below the least normal number are rounding
         let is_bent =
             |passage: &Passage, greatest| passage.bend(greatest) > f64::max(BEND * greatest, f64::MIN_POSITIVE);
-        let along = contact.lateral().map(|along| {
+        *turn = None;
+        let mut is_bent_along = false;
+        for (along, greatest) in contact.lateral().iter().zip(&mut record.greatest_along) {
             let size_at = |time: f64| Ok(along.checked_before(time, true)?.main());
             passage.look(span, along.checked_at(span.now, true)?.main(), &record.bends_along, size_at)?;
-            record.greatest_along = passage.top().abs().max(record.greatest_along);
-            *turn = passage.turns().map(|turn| turn.0).find(|turn| turn - span.now > AT_START * (span.end - span.now));
-            Ok::<_, Error>(is_bent(passage, record.greatest_along))
-        });
-        let is_bent_along = along.transpose()?.unwrap_or(false);
+            *greatest = passage.top().abs().max(*greatest);
+            let first =
+                passage.turns().map(|turn| turn.0).find(|turn| turn - span.now > AT_START * (span.end - span.now));
+            *turn = [*turn, first].into_iter().flatten().reduce(f64::min);
+            is_bent_along |= is_bent(passage, *greatest);
+        }
         let size_at = |time: f64| J::size(contact, history.checked_before(time, contact.attracts())?);
         passage.look(span, first, record.bends.as_deref().unwrap_or_default(), size_at)?;
         record.greatest_load = record.greatest_load.max(passage.top());
@@ -197,7 +208,7 @@ impl<C: Contact, J: Judge<C>> Doubled<C, J> {
 }
 
 /// Progress and control of the run of a contact of a user's own.
-pub(super) fn lead<C: Contact>(contact: &C, stepping: Stepping, until: f64) -> (Progress, Box<dyn Control<C>>) {
+pub(crate) fn lead<C: Contact>(contact: &C, stepping: Stepping, until: f64) -> (Progress, Box<dyn Control<C>>) {
     (Progress::begin(contact.time(), stepping), Box::new(Doubled::<C, Plain>::new(contact, stepping, until)))
 }
 
@@ -225,7 +236,9 @@ impl<C: Contact, J: Judge<C>> Control<C> for Doubled<C, J> {
             Some((_, given)) => loads.extend_from_slice(given),
             None => {
                 loads.push(course.histories.first().checked_before(report.time, attracts)?);
-                loads.extend(contact.lateral().map(|along| along.checked_before(report.time, true)).transpose()?);
+                for along in contact.lateral() {
+                    loads.push(along.checked_before(report.time, true)?);
+                }
             }
         }
         if report.time >= course.corner {

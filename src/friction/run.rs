@@ -1,0 +1,159 @@
+//! Runs of contacts with friction.
+
+use std::sync::Arc;
+
+use crate::contact::StepReport;
+use crate::error::{Error, FrictionError, Result};
+use crate::fields::Fields;
+use crate::friction::contact::{FrictionContact, Outcome, size};
+use crate::friction::history::ShearHistory;
+use crate::friction::load::ShearLoad;
+use crate::load::{Load, LoadHistory};
+use crate::rheology::TemperatureHistory;
+use crate::run::control::Control;
+use crate::run::progress::Progress;
+use crate::run::{Contact, Stepping, doubled};
+
+/// Tolerance of the solver over that of a run, in adaptive steps.
+const SOLVER_SHARE: f64 = 1e-4;
+/// Cells are met one by one, and how far each has slipped by then does not converge with the step: differences below
+/// this part of the tolerance are not resolved.
+const UNRESOLVED: f64 = 2e-3;
+
+impl FrictionContact {
+    /// With what acts along the surface in steps of a [`Run`](crate::run::Run), which ends its steps at the corners and
+    /// jumps of all histories; where pressure and shear jump at once, by oblique loading. Without it no force acts
+    /// along the surface of a body that does not turn.
+    ///
+    /// Adaptive steps keep the error of motions and forces along the surface, relative to their maximum so far, within
+    /// the tolerance besides that of approach and force. More than friction carries ends the run with
+    /// [`FrictionError::Slides`]; [`FrictionContact::load_share`] tells before.
+    ///
+    /// ```
+    /// use viscocontact::friction::{Coulomb, FrictionContact, ShearHistory};
+    /// use viscocontact::prelude::*;
+    ///
+    /// let ball = ViscoelasticContact::builder(Grid::square(24, 4.0e-3)?)
+    ///     .geometry(&Sphere::new(10.0e-3)?)
+    ///     .material(Material::incompressible(Zener::with_time(1.0e6, 1.0e6, 1.0)?));
+    /// let shear = ShearHistory::new(
+    ///     Ramp::new(Load::force(0.0), Load::force(0.3), 1.0)?,
+    ///     StepLoad::new(Load::force(0.0))?,
+    /// );
+    /// let mut contact = FrictionContact::new(ball, Coulomb::new(0.5)?)?.sheared_by(shear);
+    /// let pressed = StepLoad::new(Load::force(1.0))?;
+    /// let mut run = contact
+    ///     .follow(&pressed, Stepping::adaptive(1.0e-2), 2.0)
+    ///     .stop_when(|contact| contact.load_share(), Crossing::Up(0.5))?;
+    /// while run.next_step()?.is_some() {}
+    /// assert!((run.events()[0].times()[0] - 5.0 / 6.0).abs() < 1.0e-2); // 0.25 N of 0.5 N
+    /// # Ok::<(), Error>(())
+    /// ```
+    pub fn sheared_by(mut self, history: ShearHistory) -> FrictionContact {
+        self.history_along = Some(history);
+        self
+    }
+}
+
+impl Contact for FrictionContact {
+    fn step_to(&mut self, time: f64, load: Load) -> Result<StepReport> {
+        let dt = time - self.normal().time();
+        let shear = match &self.history_along {
+            None => ShearLoad::force([0.0; 2]),
+            Some(history) if dt > 0.0 => history.load(|history| history.checked_before(time, true))?,
+            Some(history) => history.load(|history| history.checked_at(time, true))?,
+        };
+        match FrictionContact::step(self, dt, load, shear)? {
+            Outcome::Holds(report) => Ok(report.normal),
+            Outcome::Slides { direction, over_limit } => {
+                Err(FrictionError::Slides { time, direction, over_limit }.into())
+            }
+        }
+    }
+
+    fn time(&self) -> f64 {
+        self.normal().time()
+    }
+
+    fn force(&self) -> f64 {
+        self.normal().fields().force()
+    }
+
+    fn approach(&self) -> f64 {
+        self.normal().fields().approach()
+    }
+
+    fn tilt(&self) -> [f64; 2] {
+        self.normal().fields().tilt()
+    }
+
+    fn contact_area(&self) -> f64 {
+        self.normal().fields().contact_area()
+    }
+
+    fn is_separated(&self) -> bool {
+        self.normal().fields().is_separated()
+    }
+
+    fn in_space(&self) -> Option<Fields<'_>> {
+        Some(self.normal().fields())
+    }
+
+    /// Of approach and force, and as large a part of them as motion and force along the surface are off by, over their
+    /// maximum so far (angles times the square root of the contact area, torques over it).
+    fn difference(&self, other: &Self) -> [f64; 2] {
+        let off = |one: [f64; 3], other: [f64; 3]| [0, 1, 2].map(|k| one[k] - other[k]);
+        let arm = self.contact_area().sqrt();
+        let motion = size(off(self.motion(), other.motion()), arm);
+        let force = size(off(FrictionContact::force(self), FrictionContact::force(other)), arm.recip());
+        let parts = [motion, force].into_iter().zip(self.largest);
+        let part = parts.map(|(off, largest)| if off > 0.0 { off / largest } else { 0.0 }).fold(0.0, f64::max);
+        let part = (part - self.unresolved).max(0.0);
+        let sizes = [[self.approach(), other.approach()], [Contact::force(self), Contact::force(other)]];
+        sizes.map(|[own, other]| (own - other).abs() + part * own.abs())
+    }
+
+    fn columns(&self) -> Vec<(&'static str, f64)> {
+        let (motion, force, [work, slip]) = (self.motion(), FrictionContact::force(self), self.work());
+        vec![
+            ("force along 1 [N]", force[0]),
+            ("force along 2 [N]", force[1]),
+            ("torque [N m]", force[2]),
+            ("motion along 1 [m]", motion[0]),
+            ("motion along 2 [m]", motion[1]),
+            ("angle [rad]", motion[2]),
+            ("stick area [m2]", self.stick_cells() as f64 * self.normal().grid().cell_area()),
+            ("work along [J]", work),
+            ("loss by slip [J]", slip),
+        ]
+    }
+
+    fn temperature(&self) -> Option<&TemperatureHistory> {
+        self.normal().temperature()
+    }
+
+    fn lateral(&self) -> &[Arc<dyn LoadHistory>] {
+        self.history_along.as_ref().map_or(&[], |history| &history.components[..])
+    }
+
+    fn untouched(&self) -> Option<f64> {
+        self.normal().untouched()
+    }
+
+    /// Adaptive steps are compared with halves of them, which must not differ by what the solver leaves.
+    fn lead(&mut self, stepping: Stepping, until: f64) -> (Progress, Box<dyn Control<Self>>) {
+        if let Stepping::Adaptive { tolerance } = stepping {
+            self.unresolved = UNRESOLVED * tolerance;
+            self.solve_to(SOLVER_SHARE * tolerance);
+        }
+        doubled::lead(self, stepping, until)
+    }
+
+    fn is_beyond(&self, error: &Error) -> bool {
+        matches!(error, Error::Friction(FrictionError::Slides { .. }))
+    }
+
+    fn is_known_until(&self, end: f64) -> Result<()> {
+        self.normal().is_known_until(end)
+    }
+}

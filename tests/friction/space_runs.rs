@@ -1,0 +1,153 @@
+//! Runs of contacts with friction in space: true over asked, slip that begins, what a run does with too much load.
+
+use viscocontact::friction::{Coulomb, FrictionContact, FrictionError, Outcome, ShearHistory, ShearLoad};
+use viscocontact::prelude::*;
+
+use super::dense::relaxation;
+use super::space::pair;
+use crate::common::draws::Draws;
+use crate::common::environment::from_environment;
+
+const UNTIL: f64 = 4.0;
+
+/// Forces between corners, of which the first acts at once.
+fn ramps(values: &[f64], by_force: bool) -> PiecewiseLinear {
+    let times = (0..values.len()).map(|k| UNTIL * k as f64 / (values.len() - 1) as f64);
+    let load = |value: f64| if by_force { Load::force(value) } else { Load::approach(value) };
+    let corners: Vec<_> = times.zip(values).map(|(time, value)| (time, load(*value))).collect();
+    PiecewiseLinear::new(&corners).unwrap()
+}
+
+/// A contact that is pressed, and sheared by forces, forces and a torque, motions, or one of each.
+fn scene(seed: u64) -> (FrictionContact, PiecewiseLinear) {
+    let draws = &mut Draws::new(7000 + seed);
+    let (nu, f) = ([0.0, 0.3, 0.5][draws.below(3)], draws.between(0.2, 1.0));
+    let builder = ViscoelasticContact::builder(Grid::square(16, 1.0).unwrap())
+        .geometry(&Sphere::new(draws.between(0.5, 2.0)).unwrap())
+        .material(pair(&relaxation(draws.below(2)), nu))
+        .settings(Settings::default().with_edge(Edge::Allow));
+    let pressed: Vec<f64> = (0..4).map(|_| draws.between(0.02, 0.06)).collect();
+    let holds = f * pressed.iter().fold(f64::INFINITY, |least: f64, force| least.min(*force));
+    let mut values = |most: f64| -> Vec<f64> {
+        (0..4).map(|k| if k == 0 { 0.0 } else { most * draws.between(-1.0, 1.0) }).collect()
+    };
+    let (forces, motions) =
+        ([values(0.6 * holds), values(0.6 * holds)], [values(0.5 * f * 0.05), values(0.5 * f * 0.05)]);
+    let twists = [values(0.05 * holds), values(0.2 * f)];
+    let shear = match seed % 4 {
+        0 => ShearHistory::new(ramps(&forces[0], true), ramps(&forces[1], true)),
+        1 => ShearHistory::new(ramps(&forces[0], true), ramps(&forces[1], true)).with_twist(ramps(&twists[0], true)),
+        2 => {
+            ShearHistory::new(ramps(&motions[0], false), ramps(&motions[1], false)).with_twist(ramps(&twists[1], false))
+        }
+        _ => ShearHistory::new(ramps(&motions[0], false), ramps(&forces[1], true)),
+    };
+    (FrictionContact::new(builder, Coulomb::new(f).unwrap()).unwrap().sheared_by(shear), ramps(&pressed, true))
+}
+
+/// Motion, force and loss at times of a run, and its steps; angles times the square root of the contact area, torques
+/// over it, and that of the last time.
+fn course(seed: u64, tolerance: f64) -> (Vec<([f64; 3], [f64; 3], f64)>, u64) {
+    let (contact, pressed) = scene(seed);
+    let mut run =
+        contact.into_follow(pressed, Stepping::adaptive(tolerance), UNTIL).sample_at(Times::every(0.25)).unwrap();
+    let mut seen = Vec::new();
+    while run.next_step().unwrap().is_some() {
+        for sample in run.samples().map(Result::unwrap).filter(|sample| sample.is_asked_for()) {
+            let contact = sample.contact();
+            let (arm, [m1, m2, m3], [q1, q2, q3]) = (contact.contact_area().sqrt(), contact.motion(), contact.force());
+            seen.push(([m1, m2, arm * m3], [q1, q2, q3 / arm], contact.work()[1]));
+        }
+    }
+    (seen, run.progress().steps)
+}
+
+fn size([a, b, c]: [f64; 3]) -> f64 {
+    a.hypot(b).hypot(c)
+}
+
+#[test]
+fn errors_are_what_was_asked_for() {
+    let (scenes, mut worst, mut over) = (from_environment("SHEARED_RUNS", 8), [0.0_f64; 3], 0);
+    for seed in 0..scenes {
+        let tolerance = [1e-2, 3e-3][(seed / 4 % 2) as usize];
+        let ((found, steps), (exact, _)) = (course(seed, tolerance), course(seed, 0.04 * tolerance));
+        assert!(found.len() == exact.len() && found.len() == 16, "{}", found.len());
+        let (mut off, mut largest) = ([0.0_f64; 3], [0.0_f64; 3]);
+        for ((m, q, loss), (exact_m, exact_q, exact_loss)) in found.into_iter().zip(exact) {
+            let apart = |one: [f64; 3], other: [f64; 3]| size([0, 1, 2].map(|k| one[k] - other[k]));
+            let own = [apart(m, exact_m), apart(q, exact_q), (loss - exact_loss).abs()];
+            let sizes = [size(exact_m), size(exact_q), exact_loss.abs()];
+            (0..3).for_each(|k| (off[k], largest[k]) = (off[k].max(own[k]), largest[k].max(sizes[k])));
+        }
+        let ratios = [0, 1, 2].map(|k| off[k] / (largest[k] * tolerance));
+        println!("{seed}: {tolerance:.0e} in {steps} steps: {ratios:.2?}");
+        over += usize::from(ratios[..2].iter().any(|ratio| *ratio > 2.0));
+        (0..3).for_each(|k| worst[k] = worst[k].max(ratios[k]));
+    }
+    println!("{scenes} runs, {over} over 2: motion, force, loss, true over asked {worst:.2?}");
+    assert!(over == 0 && worst[..2].iter().all(|ratio| *ratio > 1e-3), "{worst:?}");
+}
+
+#[test]
+fn runs_follow_jumps_and_say_when_bodies_slide() {
+    let builder = || {
+        ViscoelasticContact::builder(Grid::square(16, 1.0).unwrap())
+            .geometry(&Sphere::new(1.0).unwrap())
+            .material(pair(&relaxation(0), 0.0))
+    };
+    let still = StepLoad::new(Load::force(0.0)).unwrap();
+    let contact = || FrictionContact::new(builder(), Coulomb::new(0.5).unwrap()).unwrap();
+    let pressed = StepLoad::new(Load::force(0.04)).unwrap();
+    // a jump of both at once is one step of oblique loading: all of it sticks
+    let jump = ShearHistory::new(StepLoad::new(Load::force(0.012)).unwrap(), still.clone());
+    let mut run = contact().sheared_by(jump).into_follow(pressed.clone(), Stepping::fixed(0.5), 1.0);
+    run.next_step().unwrap().unwrap();
+    assert_eq!(run.contact().stick_cells(), run.contact().normal().contact_cells());
+    while run.next_step().unwrap().is_some() {}
+    let mut by_steps = contact();
+    for dt in [0.0, 0.5, 0.5] {
+        let outcome = by_steps.step(dt, Load::force(0.04), ShearLoad::force([0.012, 0.0])).unwrap();
+        assert!(matches!(outcome, Outcome::Holds(_)));
+    }
+    assert_eq!(run.contact().motion(), by_steps.motion());
+    // the force grows to 1.2 of what friction carries
+    let ramp = Ramp::new(Load::force(0.0), Load::force(0.024), 1.2).unwrap();
+    let run = contact().sheared_by(ShearHistory::new(ramp, still)).into_follow(pressed, Stepping::adaptive(1e-2), 2.0);
+    let mut run = run.stop_when(|contact| contact.load_share(), Crossing::Up(0.9)).unwrap();
+    let error = loop {
+        match run.next_step() {
+            Ok(step) => assert!(step.is_some()),
+            Err(error) => break error,
+        }
+    };
+    assert!((run.events()[0].times()[0] - 0.9).abs() < 1e-2);
+    // steps grow shorter towards the load that is too much
+    assert!(
+        matches!(error, Error::Friction(FrictionError::Slides { time, .. }) if (time - 1.0).abs() < 2e-3),
+        "{error}"
+    );
+    assert!(run.contact().load_share() > 0.99);
+}
+
+#[test]
+fn too_much_shear_ends_a_run_before_it() {
+    let builder = ViscoelasticContact::builder(Grid::square(16, 4.0e-3).unwrap())
+        .geometry(&Sphere::new(10.0e-3).unwrap())
+        .material(Material::incompressible(Zener::with_time(1.0e6, 1.0e6, 1.0).unwrap()));
+    let ramp = Ramp::new(Load::force(0.0), Load::force(0.6), 1.2).unwrap();
+    let shear = ShearHistory::new(StepLoad::new(Load::force(0.0)).unwrap(), ramp);
+    let contact = FrictionContact::new(builder, Coulomb::new(0.5).unwrap()).unwrap().sheared_by(shear);
+    let mut run = contact.into_follow(StepLoad::new(Load::force(1.0)).unwrap(), Stepping::fixed(0.08), 2.0);
+    let error = loop {
+        match run.next_step() {
+            Ok(step) => assert!(step.is_some()),
+            Err(error) => break error,
+        }
+    };
+    let Error::Friction(FrictionError::Slides { time, direction, over_limit }) = error else { panic!("{error}") };
+    assert!((time - 1.04).abs() < 1e-9 && (over_limit - 1.04).abs() < 1e-9, "{time} {over_limit}");
+    assert!(direction[1] == 1.0 && direction[0].abs() < 1e-6, "{direction:?}");
+    // the contact is what it was, and says how near it came
+    assert!((run.contact().time() - 0.96).abs() < 1e-9 && (run.contact().load_share() - 0.96).abs() < 1e-9);
+}
