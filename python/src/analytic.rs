@@ -5,15 +5,18 @@ use std::sync::Arc;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use viscocontact::analytic as an;
-use viscocontact::load::LoadHistory;
+use viscocontact::load::LoadHistory as Load;
 
-use crate::arrays::mapped;
+use crate::arrays::{FROM_ZERO, check, mapped};
 use crate::errors::{Kept, OrRaise, nothing_raised};
 use crate::grid::Grid;
-use crate::loads::history;
+use crate::interrupt::free;
+use crate::loads::LoadHistory;
 use crate::materials::Material;
+use crate::recipe::Recipe;
 use crate::shapes::Shape;
 use crate::sliding::complex;
+use crate::used::Function;
 
 /// Hertz: a sphere of `radius` [m] on a body of contact `modulus` E* [Pa] under `force` [N]: "contact_radius" [m], "max_pressure" [Pa]
 /// and "approach" [m].
@@ -34,34 +37,40 @@ pub fn hertz<'py>(py: Python<'py>, radius: f64, modulus: f64, force: f64) -> PyR
 #[pyclass(frozen, module = "viscocontact")]
 pub struct GrowingSphere {
     sphere: an::GrowingSphere,
-    load: Arc<dyn LoadHistory>,
+    load: Arc<dyn Load>,
+    recipe: Recipe,
 }
 
 #[pymethods]
 impl GrowingSphere {
     #[new]
-    fn new(radius: f64, material: &Material, load: &Bound<'_, PyAny>) -> PyResult<GrowingSphere> {
-        let load = history(load)?;
-        let sphere = an::GrowingSphere::new(radius, &material.material, Arc::clone(&load));
+    fn new(radius: f64, material: Bound<'_, Material>, load: &Bound<'_, PyAny>) -> PyResult<GrowingSphere> {
+        let (py, given) = (load.py(), LoadHistory::any(load)?);
+        let load = Arc::clone(&given.get().history);
+        let sphere = an::GrowingSphere::new(radius, &material.get().material, Arc::clone(&load));
         nothing_raised(load.failure())?;
-        Ok(GrowingSphere { sphere: sphere.or_raise()?, load })
+        let recipe = Recipe::new(py, "", (radius, material, given))?;
+        Ok(GrowingSphere { sphere: sphere.or_raise()?, load, recipe })
     }
 
     /// Contact radius [m] at times [s].
     fn contact_radius<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        mapped("t", t, |t| self.sphere.contact_radius(t), || self.load.failure())
+        mapped("t", t, FROM_ZERO, |t| self.sphere.contact_radius(t), || self.load.failure())
     }
 
     /// Approach [m] at times [s].
     fn approach<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        mapped("t", t, |t| self.sphere.approach(t), || self.load.failure())
+        mapped("t", t, FROM_ZERO, |t| self.sphere.approach(t), || self.load.failure())
     }
 
     /// Pressure [Pa] at distances from the centre [m] and one time [s].
     fn pressure<'py>(&self, r: &Bound<'py, PyAny>, t: f64) -> PyResult<Bound<'py, PyAny>> {
-        mapped("r", r, |r| self.sphere.pressure(r, t), || self.load.failure())
+        check("t", t, FROM_ZERO)?;
+        mapped("r", r, FROM_ZERO, |r| self.sphere.pressure(r, t), || self.load.failure())
     }
 }
+
+made_by_calls!(GrowingSphere);
 
 /// Hertz: a paraboloid of `radii` of curvature along x1 and x2 [m]: "semi_axes" of the contact [m], "max_pressure" [Pa] and "approach" [m].
 #[pyfunction]
@@ -110,31 +119,38 @@ macro_rules! sticking {
     )*) => {$(
         $(#[$about])*
         #[pyclass(frozen, module = "viscocontact")]
-        pub struct $class(an::$class);
+        pub struct $class {
+            of: an::$class,
+            recipe: Recipe,
+        }
 
         #[pymethods]
         impl $class {
             #[new]
-            fn new($($given: f64),*) -> PyResult<$class> {
-                an::$class::new($($given),*).or_raise().map($class)
+            fn new(py: Python<'_>, $($given: f64),*) -> PyResult<$class> {
+                let of = an::$class::new($($given),*).or_raise()?;
+                Ok($class { of, recipe: Recipe::new(py, "", ($($given,)*))? })
             }
 
             $(
                 $(#[$doc])*
                 #[getter]
                 fn $name(&self) -> $type {
-                    let $of = &self.0;
+                    let $of = &self.of;
                     $value
                 }
             )*
 
             $(
                 #[$told]
-                fn $function(&self, $at: f64) -> $result {
-                    self.0.$function($at).into()
+                fn $function(&self, $at: f64) -> PyResult<$result> {
+                    check(stringify!($at), $at, FROM_ZERO)?;
+                    Ok(self.of.$function($at).into())
                 }
             )?
         }
+
+        made_by_calls!($class);
     )*};
 }
 
@@ -225,26 +241,38 @@ sticking! {
 ///
 /// `zone` is the length of the zone of the attraction over E*ρ²/w: π/4 of a constant traction, about 1.4 of an exponential one.
 #[pyclass(frozen, module = "viscocontact")]
-pub struct OpeningEdge(an::OpeningEdge);
+pub struct OpeningEdge {
+    edge: an::OpeningEdge,
+    recipe: Recipe,
+}
 
 #[pymethods]
 impl OpeningEdge {
     #[new]
     #[pyo3(signature = (material, work, range, *, zone=None))]
-    fn new(material: &Material, work: f64, range: f64, zone: Option<f64>) -> PyResult<OpeningEdge> {
-        let edge = an::OpeningEdge::new(&material.material, work, range).or_raise()?;
-        zone.map_or(Ok(edge.clone()), |zone| edge.with_zone(zone)).or_raise().map(OpeningEdge)
+    fn new(
+        py: Python<'_>,
+        material: Bound<'_, Material>,
+        work: f64,
+        range: f64,
+        zone: Option<f64>,
+    ) -> PyResult<OpeningEdge> {
+        let edge = an::OpeningEdge::new(&material.get().material, work, range).or_raise()?;
+        let edge = zone.map_or(Ok(edge.clone()), |zone| edge.with_zone(zone)).or_raise()?;
+        let keywords = dict! { py; "zone": zone };
+        let recipe = Recipe::new(py, "", (material, work, range))?.with_keywords(Some(&keywords))?;
+        Ok(OpeningEdge { edge, recipe })
     }
 
     /// The work that opens a unit of area [J/m²] at a speed of the edge [m/s].
     fn work(&self, speed: f64) -> PyResult<f64> {
-        self.0.work(speed).or_raise()
+        self.edge.work(speed).or_raise()
     }
 
     /// A sphere of `radius` [m] drawn back from an `approach` [m] at a `speed` [m/s], at the greatest pull: "force" [N], "approach" and
     /// "contact_radius" [m], "edge_speed" [m/s] and "work" [J/m²].
     fn pull_off<'py>(&self, py: Python<'py>, radius: f64, approach: f64, speed: f64) -> PyResult<Bound<'py, PyDict>> {
-        let of = py.detach(|| self.0.pull_off(radius, approach, speed)).or_raise()?;
+        let of = free(py, || self.edge.pull_off(radius, approach, speed)).or_raise()?;
         Ok(dict! { py;
             "force": of.force,
             "approach": of.approach,
@@ -255,7 +283,9 @@ impl OpeningEdge {
     }
 }
 
-getters! {OpeningEdge, of:
+made_by_calls!(OpeningEdge);
+
+getters! {OpeningEdge.edge, of:
     /// The length E*ρ²/w of the relaxed body [m].
     length: f64 = of.length();
 }
@@ -280,7 +310,7 @@ pub fn persson_friction(
     py: Python<'_>,
     grid: &Grid,
     surface: &Shape,
-    modulus: Py<PyAny>,
+    modulus: Function,
     pressure: f64,
     velocity: &Bound<'_, PyAny>,
     gamma: f64,
@@ -289,7 +319,7 @@ pub fn persson_friction(
     let surface = Arc::clone(&surface.geometry);
     let kept = Kept::default();
     let modulus = |omega| complex(&modulus, omega, &kept);
-    let theory = py.detach(|| an::PerssonFriction::new(&grid.0, &*surface, modulus, pressure, velocity, gamma));
+    let theory = free(py, || an::PerssonFriction::new(&grid.0, &*surface, modulus, pressure, velocity, gamma));
     let theory = kept.raise_or(theory.or_raise())?;
     Ok((theory.friction, theory.contact_share))
 }

@@ -9,9 +9,11 @@ use pyo3::types::PyDict;
 use viscocontact::UserError;
 use viscocontact::adhesion::{self as ad, Attraction as Law};
 
-use crate::arrays::mapped;
+use crate::arrays::{FROM_ZERO, mapped};
 use crate::errors::{OrRaise, no_violation, nothing_raised};
+use crate::interrupt::free;
 use crate::recipe::Recipe;
+use crate::used::Function;
 
 /// A law of the attraction between surfaces: traction [Pa] over gap [m].
 ///
@@ -106,8 +108,8 @@ impl Attraction {
     ///
     /// An exception of a function comes out of the step that needed it.
     #[staticmethod]
-    fn function(py: Python<'_>, traction: Py<PyAny>, energy: Py<PyAny>) -> PyResult<Attraction> {
-        let recipe = Recipe::new(py, "function", (traction.clone_ref(py), energy.clone_ref(py)))?;
+    fn function(py: Python<'_>, traction: Function, energy: Function) -> PyResult<Attraction> {
+        let recipe = Recipe::new(py, "function", (&traction, &energy))?.calling([traction.clone(), energy.clone()]);
         let law = OwnLaw { traction, energy, failure: Mutex::default() };
         let _ = (law.traction(0.0), law.energy(0.0));
         nothing_raised(law.failure())?;
@@ -117,18 +119,18 @@ impl Attraction {
     /// Checks the laws of attractions: a traction that falls with the gap, and the energy its integral. Raises ValueError with the first
     /// violation.
     fn check(&self, py: Python<'_>) -> PyResult<()> {
-        let verdict = py.detach(|| ad::laws::all(&*self.law));
+        let verdict = free(py, || ad::laws::all(&*self.law));
         no_violation(self.law.failure(), verdict)
     }
 
     /// Traction [Pa] at gaps [m].
     fn traction<'py>(&self, gap: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        mapped("gap", gap, |gap| self.law.traction(gap), || self.law.failure())
+        mapped("gap", gap, FROM_ZERO, |gap| self.law.traction(gap), || self.law.failure())
     }
 
     /// Energy [J/m²] that opens the gap [m] to infinity.
     fn energy<'py>(&self, gap: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        mapped("gap", gap, |gap| self.law.energy(gap), || self.law.failure())
+        mapped("gap", gap, FROM_ZERO, |gap| self.law.energy(gap), || self.law.failure())
     }
 
     /// Tabor's number of a sphere of `radius` [m] on a body of contact `modulus` E* [Pa].
@@ -156,14 +158,14 @@ made_by_calls!(Attraction);
 
 /// A law of two functions in Python.
 struct OwnLaw {
-    traction: Py<PyAny>,
-    energy: Py<PyAny>,
+    traction: Function,
+    energy: Function,
     failure: Mutex<Option<UserError>>,
 }
 
 impl OwnLaw {
-    fn call(&self, function: &Py<PyAny>, gap: f64) -> f64 {
-        Python::attach(|py| function.call1(py, (gap,))?.extract(py)).unwrap_or_else(|error: PyErr| {
+    fn call(&self, function: &Function, gap: f64) -> f64 {
+        function.call((gap,)).unwrap_or_else(|error: PyErr| {
             *self.failure.lock().unwrap_or_else(PoisonError::into_inner) =
                 Some(UserError::new("the attraction", error));
             f64::NAN

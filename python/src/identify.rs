@@ -1,14 +1,22 @@
 //! Moduli from measured indentation curves, with their uncertainty.
 
-use pyo3::exceptions::PyTypeError;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+use pyo3::exceptions::{PyRuntimeError, PyTypeError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use viscocontact_identify as id;
 
 use crate::arrays::{Array, to_array};
 use crate::curves::{Curve, Experiment, model};
-use crate::errors::OrRaise;
+use crate::errors::{Kept, OrRaise};
 use crate::fits::Fit;
+use crate::interrupt::{free, interruptible};
+use crate::recipe::{Recipe, Value};
+use crate::states::ElasticStates;
+use crate::used::{Function, goes_on};
 
 /// What is known of a property of each curve: one for all, or a list with one for each.
 fn per_curve(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Option<id::PerCurve>> {
@@ -65,7 +73,10 @@ fn nuisance(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Option<id::Nuisanc
 /// >>> abs(fit["tau"].value / 0.5 - 1) < 0.01
 /// True
 #[pyclass(frozen, module = "viscocontact")]
-pub struct Identification(id::Identification);
+pub struct Identification {
+    pub of: id::Identification,
+    recipe: Recipe,
+}
 
 #[pymethods]
 impl Identification {
@@ -73,7 +84,8 @@ impl Identification {
     #[pyo3(signature = (model, *, contact_point=None, offset=None, drift=None, tilt=None, drag=None, stiffness=None, noise=None, known_sigma=None, robust=false, fix=None, start=None))]
     #[allow(clippy::too_many_arguments)]
     fn new(
-        model: &Bound<'_, PyAny>,
+        py: Python<'_>,
+        model: Value<'_>,
         contact_point: Option<&Bound<'_, PyAny>>,
         offset: Option<&Bound<'_, PyAny>>,
         drift: Option<&Bound<'_, PyAny>>,
@@ -87,7 +99,7 @@ impl Identification {
         start: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Identification> {
         type Setter = fn(id::Identification, id::PerCurve) -> id::Identification;
-        let mut identification = id::Identification::new(self::model(model)?);
+        let mut identification = id::Identification::new(self::model(&model)?);
         let nuisances: [(&str, Option<&Bound<'_, PyAny>>, Setter); 6] = [
             ("contact_point", contact_point, id::Identification::contact_point),
             ("offset", offset, id::Identification::offset),
@@ -136,26 +148,71 @@ impl Identification {
                 identification = give(identification, &name, value);
             }
         }
-        Ok(Identification(identification))
+        identification.check().or_raise()?;
+        let keywords = dict! { py;
+            "contact_point": contact_point,
+            "offset": offset,
+            "drift": drift,
+            "tilt": tilt,
+            "drag": drag,
+            "stiffness": stiffness,
+            "noise": noise,
+            "known_sigma": known_sigma,
+            "robust": robust,
+            "fix": fix,
+            "start": start,
+        };
+        let recipe = Recipe::new(py, "", (model,))?.with_keywords(Some(&keywords))?;
+        Ok(Identification { of: identification, recipe })
     }
 
     /// Fits a curve, or several of one material together.
     ///
+    /// `progress` is called without arguments before each step of the search; the fit ends with `Cancelled` where it returns False. Ctrl-C
+    /// ends it, too.
+    ///
     /// Raises ValueError if the curves do not suit, ConvergenceError if the search does not converge.
-    fn fit(&self, py: Python<'_>, curves: &Bound<'_, PyAny>) -> PyResult<Fit> {
-        let curves = several(curves)?;
-        py.detach(|| self.0.fit(&curves)).or_raise().map(Fit)
+    #[pyo3(signature = (curves, *, progress=None))]
+    fn fit(slf: Bound<'_, Self>, curves: &Bound<'_, PyAny>, progress: Option<Function>) -> PyResult<Fit> {
+        let (curves, tips) = several(curves)?;
+        let of = slf.get().of.clone();
+        let fit = watched(slf.py(), progress, |watch| of.watched(watch).fit(&curves))?;
+        Ok(Fit { fit, by: slf.unbind(), of_curve: None, tips })
     }
 
     /// Fits each curve alone, on all cores, as those of a force map: a list of fits, and of exceptions where one failed.
-    fn fit_each(&self, py: Python<'_>, curves: &Bound<'_, PyAny>) -> PyResult<Vec<Py<PyAny>>> {
-        let curves = several(curves)?;
-        let fits = py.detach(|| self.0.fit_each(&curves, |_| {}));
-        let of = |fit: id::Result<id::Fit>| match fit.or_raise() {
-            Ok(fit) => Ok(Py::new(py, Fit(fit))?.into_any()),
+    ///
+    /// `progress` is called after each fit with the part that is done; where it returns False, the others are not fitted: `Cancelled` is in their
+    /// place. Ctrl-C ends the call.
+    #[pyo3(signature = (curves, *, progress=None))]
+    fn fit_each(
+        slf: Bound<'_, Self>,
+        curves: &Bound<'_, PyAny>,
+        progress: Option<Function>,
+    ) -> PyResult<Vec<Py<PyAny>>> {
+        let (py, (curves, tips)) = (slf.py(), several(curves)?);
+        let (done, total) = (AtomicUsize::new(0), curves.len() as f64);
+        let (ended, kept) = (Arc::new(AtomicBool::new(false)), Kept::default());
+        let told = |_: &id::Result<id::Fit>| {
+            let share = (done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / total;
+            if !kept.number(goes_on(progress.as_ref(), (share,)), false) {
+                ended.store(true, Ordering::Relaxed);
+            }
+        };
+        let own = slf.get().of.clone();
+        let fits = kept.raise_or(watched(py, None, |watch| {
+            let ended = Arc::clone(&ended);
+            let goes_on = move || if ended.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { watch() };
+            Ok(own.watched(goes_on).fit_each(&curves, told))
+        }))?;
+        let of = |(curve, fit): (usize, id::Result<id::Fit>)| match fit.or_raise() {
+            Ok(fit) => {
+                let (by, tips) = (slf.clone().unbind(), vec![tips[curve].clone_ref(py)]);
+                Ok(Py::new(py, Fit { fit, by, of_curve: Some(curve), tips })?.into_any())
+            }
             Err(error) => Ok(error.into_value(py).into_any()),
         };
-        fits.into_iter().map(of).collect()
+        fits.into_iter().enumerate().map(of).collect()
     }
 
     /// Force [N] and depth [m] at each time of an experiment, for parameters of the material by name.
@@ -167,7 +224,7 @@ impl Identification {
     ) -> PyResult<(Array<'py>, Array<'py>)> {
         let named = named(values)?;
         let named: Vec<(&str, f64)> = named.iter().map(|(name, value)| (&**name, *value)).collect();
-        let samples = py.detach(|| self.0.respond(&experiment.0, &named)).or_raise()?;
+        let samples = free(py, || self.of.respond(&experiment.of, &named)).or_raise()?;
         let n = [samples.len()];
         let (force, depth) = samples.iter().map(|sample| (sample.force, sample.depth)).unzip();
         Ok((to_array(py, force, &n)?, to_array(py, depth, &n)?))
@@ -185,13 +242,15 @@ impl Identification {
         let named = named(values)?;
         let named: Vec<(&str, f64)> = named.iter().map(|(name, value)| (&**name, *value)).collect();
         let experiments: Vec<id::Experiment> =
-            experiments.iter().map(|experiment| experiment.get().0.clone()).collect();
-        let bounds = py.detach(|| self.0.bounds(&experiments, &named, sigma)).or_raise()?;
+            experiments.iter().map(|experiment| experiment.get().of.clone()).collect();
+        let bounds = free(py, || self.of.bounds(&experiments, &named, sigma)).or_raise()?;
         Ok(bounds.names.iter().filter_map(|name| Some((name.clone(), bounds.deviation(name)?))).collect())
     }
 }
 
-getters! {Identification, of:
+made_by_calls!(Identification);
+
+getters! {Identification.of, of:
     /// Names of the parameters of the model.
     parameters: Vec<String> = of.model().parameters();
 }
@@ -201,11 +260,14 @@ getters! {Identification, of:
 ///
 /// Raises ValueError if fits are of different curves.
 #[pyfunction]
-pub fn ranked(fits: Vec<Bound<'_, PyAny>>) -> PyResult<Vec<(Fit, f64, f64)>> {
-    let fits: Vec<id::Fit> =
-        fits.iter().filter_map(|fit| fit.cast::<Fit>().ok()).map(|fit| fit.get().0.clone()).collect();
-    let ranked = id::ranked(fits.into_iter().map(Ok)).or_raise()?;
-    Ok(ranked.into_iter().map(|(fit, difference, weight)| (Fit(fit), difference, weight)).collect())
+pub fn ranked(fits: Vec<Bound<'_, PyAny>>) -> PyResult<Vec<(Bound<'_, Fit>, f64, f64)>> {
+    let fits: Vec<Bound<'_, Fit>> = fits.into_iter().filter_map(|fit| fit.cast_into::<Fit>().ok()).collect();
+    let ranked = id::ranked(fits.iter().map(|fit| Ok(fit.get().fit.clone()))).or_raise()?;
+    let place = |(fit, difference, weight): (id::Fit, f64, f64)| {
+        let own = fits.iter().find(|own| own.get().fit.state() == fit.state() && own.get().fit.model() == fit.model());
+        own.map(|own| (own.clone(), difference, weight))
+    };
+    Ok(ranked.into_iter().filter_map(place).collect())
 }
 
 /// Whether two relaxation times, each (time [s], standard deviation of its logarithm, contact area [m²]), agree with creep (equal times) or
@@ -220,13 +282,48 @@ pub fn drainage_or_creep(one: (f64, f64, f64), other: (f64, f64, f64)) -> PyResu
     Ok(format!("{:?}", scaling.verdict).to_lowercase())
 }
 
-fn several(curves: &Bound<'_, PyAny>) -> PyResult<Vec<id::Curve>> {
+type Several = (Vec<id::Curve>, Vec<Py<ElasticStates>>);
+
+/// The curves of the crate, and their tips.
+pub fn several(curves: &Bound<'_, PyAny>) -> PyResult<Several> {
+    let own = |curve: &Bound<'_, Curve>| (curve.get().of.clone(), curve.get().tip.clone_ref(curve.py()));
     if let Ok(curve) = curves.cast::<Curve>() {
-        return Ok(vec![curve.get().0.clone()]);
+        return Ok([own(curve)].into_iter().unzip());
     }
     let needed = "curves: a Curve or a sequence of them is needed";
     let curves: Vec<Bound<'_, Curve>> = curves.extract().map_err(|_| PyTypeError::new_err(needed))?;
-    Ok(curves.iter().map(|curve| curve.get().0.clone()).collect())
+    Ok(curves.iter().map(own).unzip())
+}
+
+/// What ends a search where it breaks.
+pub type Watch = Box<dyn Fn() -> ControlFlow<()> + Send + Sync>;
+
+/// Computes what is watched: Ctrl-C ends it, and a report of progress that returns False.
+pub fn watched<T: Send>(
+    py: Python<'_>,
+    progress: Option<Function>,
+    job: impl FnOnce(Watch) -> id::Result<T> + Send,
+) -> PyResult<T> {
+    let cancel = Arc::<AtomicBool>::default();
+    let (flag, kept) = (Arc::clone(&cancel), Kept::default());
+    let kept_of = kept.clone();
+    let watch = move || {
+        let is_on = !flag.load(Ordering::Relaxed) && kept_of.number(goes_on(progress.as_ref(), ()), false);
+        if is_on { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    };
+    let mut failed = None;
+    let result = kept.raise_or(interruptible(py, true, &cancel, || match job(Box::new(watch)) {
+        Ok(value) => Ok(Some(value)),
+        Err(id::Error::Contact(error)) => Err(error),
+        Err(error) => {
+            failed = Some(error);
+            Ok(None)
+        }
+    }))?;
+    match failed {
+        Some(error) => Err(error).or_raise(),
+        None => result.ok_or_else(|| PyRuntimeError::new_err("the fit has no result")),
+    }
 }
 
 fn named(values: &Bound<'_, PyDict>) -> PyResult<Vec<(String, f64)>> {

@@ -29,7 +29,6 @@ mod reports;
 mod rheology;
 mod run;
 mod scene;
-mod scratch;
 mod shapes;
 mod sliding;
 mod states;
@@ -37,6 +36,7 @@ mod states_contact;
 mod stress;
 mod study;
 mod temperature;
+mod used;
 mod writers;
 
 use pyo3::prelude::*;
@@ -47,6 +47,10 @@ mod _native {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        // where there is no fork, there is nothing to register
+        if let Ok(register) = module.py().import("os")?.getattr("register_at_fork") {
+            register.call((), Some(&dict! { module.py(); "after_in_child": module.getattr("_forked")? }))?;
+        }
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 
@@ -75,6 +79,8 @@ mod _native {
     use crate::held::Times;
     #[pymodule_export]
     use crate::identify::{Identification, drainage_or_creep, ranked};
+    #[pymodule_export]
+    use crate::interrupt::forked;
     #[pymodule_export]
     use crate::kernels::{InfluenceKernel, Layer};
     #[pymodule_export]

@@ -10,9 +10,10 @@ use pyo3::types::{PyDict, PyTuple};
 use viscocontact::geometry::{self as geo, Anisotropy, Form, LengthUnit, RoughSpec, Roughness};
 use viscocontact::{FileError, TextFormat};
 
-use crate::arrays::{Array, mapped, never, plane, table, to_array};
+use crate::arrays::{ALL, Array, mapped, never, plane, table, to_array};
 use crate::errors::{OrRaise, choice, raise};
-use crate::grid::{Grid, PerAxis};
+use crate::grid::{Count, Grid, PerAxis};
+use crate::interrupt::free;
 use crate::shapes::Shape;
 
 /// Heights of a surface on a regular grid of points, measured or computed; a `Shape`.
@@ -65,7 +66,7 @@ impl HeightMap {
         change: impl FnOnce(geo::HeightMap) -> viscocontact::Result<geo::HeightMap> + Send,
     ) -> PyResult<Py<HeightMap>> {
         let (py, map) = (slf.py(), (*slf.get().0).clone());
-        let map = Arc::new(py.detach(|| change(map)).or_raise()?);
+        let map = Arc::new(free(py, || change(map)).or_raise()?);
         let shape = Shape::made(py, maker, arguments, Arc::clone(&map) as _)?;
         Py::new(py, PyClassInitializer::from(shape).add_subclass(HeightMap(map)))
     }
@@ -119,24 +120,24 @@ impl HeightMap {
         let lengths = lengths.map(|lengths| lengths.0);
         let needs = |what: &str| PyTypeError::new_err(format!("{}: this kind of file needs {what}", path.display()));
         let map = match ending.as_str() {
-            "sdf" | "sur" | "pro" | "x3p" => py.detach(|| geo::HeightMap::read(&path)),
+            "sdf" | "sur" | "pro" | "x3p" => free(py, || geo::HeightMap::read(&path)),
             "gsf" => {
                 let file = opened(&path)?;
-                py.detach(|| geo::HeightMap::from_gsf(file, unit))
+                free(py, || geo::HeightMap::from_gsf(file, unit))
             }
             _ => {
                 let file = opened(&path)?;
                 let unit = unit.ok_or_else(|| needs("the unit of its numbers, such as unit=\"um\""))?;
                 if points {
-                    py.detach(|| geo::HeightMap::from_xyz(file, unit, unit, format))
+                    free(py, || geo::HeightMap::from_xyz(file, unit, unit, format))
                 } else if profile {
-                    py.detach(|| geo::HeightMap::from_profile(file, unit, unit, format))
+                    free(py, || geo::HeightMap::from_profile(file, unit, unit, format))
                 } else {
                     let lengths = lengths.ok_or_else(|| needs("the lengths of its sides in m, as lengths=(l1, l2)"))?;
                     if ending == "npy" {
-                        py.detach(|| geo::HeightMap::from_npy(file, lengths, unit))
+                        free(py, || geo::HeightMap::from_npy(file, lengths, unit))
                     } else {
-                        py.detach(|| geo::HeightMap::from_text(file, lengths, unit, format))
+                        free(py, || geo::HeightMap::from_text(file, lengths, unit, format))
                     }
                 }
             }
@@ -148,7 +149,7 @@ impl HeightMap {
     #[staticmethod]
     fn from_points(py: Python<'_>, points: &Bound<'_, PyAny>) -> PyResult<Py<HeightMap>> {
         let points: Vec<[f64; 3]> = table("points", points)?;
-        HeightMap::made(py, py.detach(|| geo::HeightMap::from_points(&points)).or_raise()?)
+        HeightMap::made(py, free(py, || geo::HeightMap::from_points(&points)).or_raise()?)
     }
 
     /// The heights [m], of the shape of the map; NaN where one is missing.
@@ -212,14 +213,14 @@ impl HeightMap {
 
     /// The map interpolated at the cells of a grid, and the error of that: rms [m], greatest [m], rms over the rms height.
     fn resampled(&self, py: Python<'_>, grid: &Grid) -> PyResult<(Py<HeightMap>, (f64, f64, f64))> {
-        let new = py.detach(|| self.0.resampled(&grid.0)).or_raise()?;
+        let new = free(py, || self.0.resampled(&grid.0)).or_raise()?;
         let error = (new.error.rms, new.error.max, new.error.of_rms_height);
         Ok((HeightMap::made(py, new.map)?, error))
     }
 
     /// Mean, rms height, skewness, kurtosis, rms slope, rms slopes along x1 and x2, and rms curvature, in SI units.
     fn statistics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let of = py.detach(|| self.0.statistics()).or_raise()?;
+        let of = free(py, || self.0.statistics()).or_raise()?;
         Ok(dict! { py;
             "mean": of.mean,
             "rms_height": of.rms_height,
@@ -232,18 +233,18 @@ impl HeightMap {
     }
 
     /// The heights [m] in the middle of so many bins, and their density [1/m], as rows.
-    fn height_distribution<'py>(&self, py: Python<'py>, bins: usize) -> PyResult<Array<'py>> {
-        rows(py, py.detach(|| self.0.height_distribution(bins)).or_raise()?)
+    fn height_distribution<'py>(&self, py: Python<'py>, bins: Count) -> PyResult<Array<'py>> {
+        rows(py, free(py, || self.0.height_distribution(bins.0)).or_raise()?)
     }
 
     /// Wave numbers [rad/m] and the radial mean of the power spectral density of the heights [m⁴], as rows.
     fn power_spectrum<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
-        rows(py, py.detach(|| self.0.power_spectrum()).or_raise()?)
+        rows(py, free(py, || self.0.power_spectrum()).or_raise()?)
     }
 
     /// The height at `x1` along the line x2 = `x2` [m], NaN where there is none: a float or an array of the shape of `x1`.
     fn height_at<'py>(&self, x1: &Bound<'py, PyAny>, x2: f64) -> PyResult<Bound<'py, PyAny>> {
-        mapped("x1", x1, |x1| self.0.height_at(x1, x2).unwrap_or(f64::NAN), never)
+        mapped("x1", x1, ALL, |x1| self.0.height_at(x1, x2).unwrap_or(f64::NAN), never)
     }
 
     /// The slopes along x1 and x2 at a point [m]; None where there is no height.
@@ -257,7 +258,7 @@ impl HeightMap {
         let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
         let kind = choice("ending of the path", &ending, &kinds)?;
         let file = File::create(&path)?;
-        py.detach(|| match kind {
+        free(py, || match kind {
             0 => self.0.write_sdf(file),
             1 => self.0.write_gsf(file),
             _ => self.0.write_npy(file),
@@ -274,7 +275,7 @@ impl HeightMap {
     /// >>> HeightMap.rough(Grid(64, 1e-3), 0.5e-3, 0.1e-3, rms_slope=0.1, seed=3).statistics()["rms_slope"].__round__(3)
     /// 0.1
     #[staticmethod]
-    #[pyo3(signature = (grid, longest, shortest, *, rms_slope=None, rms_height=None, hurst=0.8, roll_off=None, anisotropy=None, period=None, seed=0))]
+    #[pyo3(signature = (grid, longest, shortest, *, rms_slope=None, rms_height=None, hurst=0.8, roll_off=None, anisotropy=None, period=None, seed=Count(0)))]
     #[allow(clippy::too_many_arguments)]
     fn rough(
         py: Python<'_>,
@@ -287,14 +288,14 @@ impl HeightMap {
         roll_off: Option<f64>,
         anisotropy: Option<(f64, f64)>,
         period: Option<PerAxis<f64>>,
-        seed: u64,
+        seed: Count,
     ) -> PyResult<Py<HeightMap>> {
         let roughness = match (rms_slope, rms_height) {
             (Some(slope), None) => Roughness::RmsSlope(slope),
             (None, Some(height)) => Roughness::RmsHeight(height),
             _ => return Err(PyTypeError::new_err("give rms_slope or rms_height, one of them")),
         };
-        let mut spec = RoughSpec::new(longest, shortest, roughness).with_seed(seed).with_hurst(hurst);
+        let mut spec = RoughSpec::new(longest, shortest, roughness).with_seed(seed.0 as u64).with_hurst(hurst);
         if let Some(roll_off) = roll_off {
             spec = spec.with_roll_off(roll_off);
         }
@@ -303,7 +304,7 @@ impl HeightMap {
         }
         let on = &grid.get().0;
         let period = period.map(|period| period.0);
-        let rough = py.detach(|| match period {
+        let rough = free(py, || match period {
             Some(period) => geo::Rough::windowed(on, spec, period),
             None => geo::Rough::new(on, spec),
         });

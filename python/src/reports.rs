@@ -60,6 +60,8 @@ pub fn figures<'py>(py: Python<'py>, of: &ct::Figures) -> PyResult<Bound<'py, Py
     })
 }
 
+numbers!(StepReport);
+
 getters! {StepReport, of:
     /// Time at the end of the step [s].
     time: f64 = of.time;
@@ -107,6 +109,8 @@ impl BodyState {
         )
     }
 }
+
+numbers!(BodyState);
 
 getters! {BodyState, of:
     /// Approach at the origin of the grid [m].

@@ -8,7 +8,7 @@ use viscocontact::{self as vc, ViscoelasticContact};
 
 use crate::attraction::Attraction;
 use crate::errors::choice;
-use crate::grid::Grid;
+use crate::grid::{Count, Grid};
 use crate::kernels::InfluenceKernel;
 use crate::loads::history;
 use crate::materials::Material;
@@ -20,7 +20,7 @@ fn setting(settings: Settings, name: &str, value: &Bound<'_, PyAny>) -> PyResult
     let text = || value.extract::<String>();
     Ok(Some(match name {
         "tolerance" => settings.with_tolerance(value.extract()?),
-        "max_iterations" => settings.with_max_iterations(value.extract()?),
+        "max_iterations" => settings.with_max_iterations(value.extract::<Count>()?.0),
         "series_tolerance" => settings.with_series_tolerance(value.extract()?),
         "symmetry" => settings.with_symmetry(value.extract()?),
         "window" => settings.with_window(value.extract()?),

@@ -6,26 +6,27 @@ use std::sync::atomic::AtomicBool;
 
 use numpy::Complex64;
 use pyo3::exceptions::PyTypeError;
+use pyo3::gc::PyVisit;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyTuple};
 use viscocontact::sliding as sl;
 
 use crate::arrays::{number, vectors};
 use crate::errors::{Kept, OrRaise, choice, in_python};
 use crate::fields::Fields;
 use crate::grid::Grid;
-use crate::interrupt::{Listener, interruptible};
+use crate::interrupt::{Listener, free, interruptible};
 use crate::loads::{Load, loads};
 use crate::materials::Material;
 use crate::pictures::{Picture, quantity};
 use crate::reports::figures;
 use crate::scene::builder;
 use crate::temperature::TimeTemperature;
+use crate::used::{Function, Shared, Taken, Traversed};
 
 /// The complex number that a function in Python gives at a frequency.
-pub fn complex(function: &Py<PyAny>, omega: f64, kept: &Kept) -> Complex64 {
-    let value = Python::attach(|py| function.call1(py, (omega,))?.extract(py));
-    kept.number(value, Complex64::new(f64::NAN, f64::NAN))
+pub fn complex(function: &Function, omega: f64, kept: &Kept) -> Complex64 {
+    kept.number(function.call((omega,)), Complex64::new(f64::NAN, f64::NAN))
 }
 
 /// A velocity along x1, or along x1 and x2.
@@ -58,6 +59,8 @@ impl SlidingReport {
         figures(py, &self.0.figures)
     }
 }
+
+numbers!(SlidingReport);
 
 getters! {SlidingReport, of:
     /// Velocity of the indenter over the bodies [m/s].
@@ -107,6 +110,9 @@ pub struct SteadySliding {
     cancel: Arc<AtomicBool>,
     /// What the modulus raised.
     kept: Kept,
+    /// What the motion may call, and the objects that show the functions of its parts.
+    modulus: Option<Function>,
+    parts: Py<PyTuple>,
 }
 
 #[pymethods]
@@ -121,8 +127,8 @@ impl SteadySliding {
         grid: Bound<'_, Grid>,
         geometry: Bound<'_, PyAny>,
         material: Bound<'_, Material>,
-        base: Option<&Material>,
-        modulus: Option<Py<PyAny>>,
+        base: Option<Bound<'_, Material>>,
+        modulus: Option<Function>,
         counter_motion: Option<&str>,
         options: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<SteadySliding> {
@@ -133,25 +139,37 @@ impl SteadySliding {
         }
         let kept = Kept::default();
         let raised = kept.clone();
-        let sliding = match (base, modulus) {
-            (None, None) => py.detach(|| builder.build_sliding()),
-            (Some(base), None) => py.detach(|| builder.build_sliding_on(base.material.clone())),
+        let bodies = base.as_ref().map(|base| base.get().material.clone());
+        let sliding = match (bodies, modulus.clone()) {
+            (None, None) => free(py, || builder.build_sliding()),
+            (Some(base), None) => free(py, || builder.build_sliding_on(base)),
             (None, Some(modulus)) => {
-                py.detach(|| builder.build_sliding_by(move |omega| complex(&modulus, omega, &raised)))
+                free(py, || builder.build_sliding_by(move |omega| complex(&modulus, omega, &raised)))
             }
             _ => return Err(PyTypeError::new_err("give base or modulus, not both")),
         };
         let cancel = Arc::<AtomicBool>::default();
         let sliding = kept.raise_or(sliding.or_raise())?.cancelled_by(Arc::clone(&cancel));
-        Ok(SteadySliding { sliding, cancel, kept })
+        let parts = (geometry, material, base, options).into_pyobject(py)?.unbind();
+        Ok(SteadySliding { sliding, cancel, kept, modulus, parts })
+    }
+
+    fn __traverse__(&self, visit: PyVisit<'_>) -> Traversed {
+        visit.call(&self.parts)?;
+        self.modulus.iter().try_for_each(|function| visit.call(&*function.0))
     }
 
     /// The state under a load, a force or an approach, of the indenter that moves with `velocity` [m/s]: along x1, or a pair along x1 and
     /// x2. Ctrl-C ends the search within an iteration, and keeps the state found last.
-    fn at(&mut self, py: Python<'_>, velocity: &Bound<'_, PyAny>, load: &Load) -> PyResult<SlidingReport> {
+    fn at(
+        mut slf: Taken<'_, Self>,
+        py: Python<'_>,
+        velocity: &Bound<'_, PyAny>,
+        load: &Load,
+    ) -> PyResult<SlidingReport> {
         let (velocity, load) = (self::velocity(velocity)?, load.load);
-        let found = interruptible(py, true, &self.cancel, || self.sliding.at(velocity, load));
-        self.kept.raise_or(found).map(SlidingReport)
+        let SteadySliding { sliding, cancel, kept, .. } = &mut *slf;
+        kept.raise_or(interruptible(py, true, cancel, || sliding.at(velocity, load))).map(SlidingReport)
     }
 
     /// The states of all velocities [m/s] along x1, or pairs along x1 and x2, under each of the loads, at each of the temperatures [K].
@@ -162,13 +180,13 @@ impl SteadySliding {
     /// Returns the table of the states, each found from the one before: neighbours cost least.
     #[pyo3(signature = (velocities, loads, *, law=None, temperatures=None, progress=None))]
     fn sweep(
-        &mut self,
+        mut slf: Taken<'_, Self>,
         py: Python<'_>,
         velocities: &Bound<'_, PyAny>,
         loads: &Bound<'_, PyAny>,
         law: Option<&TimeTemperature>,
         temperatures: Option<Vec<f64>>,
-        progress: Option<Py<PyAny>>,
+        progress: Option<Function>,
     ) -> PyResult<SlidingTable> {
         let velocities = vectors("velocities", velocities)?;
         let mut sweep = sl::SlidingSweep::new(velocities, self::loads(loads)?);
@@ -178,7 +196,7 @@ impl SteadySliding {
             _ => return Err(PyTypeError::new_err("law and temperatures belong together")),
         }
         let mut listener = Listener::new(progress);
-        let SteadySliding { sliding, cancel, kept, .. } = self;
+        let SteadySliding { sliding, cancel, kept, .. } = &mut *slf;
         let table =
             interruptible(py, true, cancel, || sliding.sweep_with(&sweep, |_, share| listener.goes_on((share,))));
         listener.result(kept.raise_or(table)).map(SlidingTable)
@@ -186,8 +204,8 @@ impl SteadySliding {
 
     /// The fields of the state found last, with all that a contact shows: patches, profiles, distributions, stress.
     #[getter]
-    fn fields(&self) -> Fields {
-        Fields(self.sliding.fields().keep())
+    fn fields(slf: Shared<'_, Self>) -> Fields {
+        Fields(slf.sliding.fields().keep())
     }
 
     /// Bytes that a contact in steady motion takes at most, before it is built. Takes the arguments of `ViscoelasticContact`.
@@ -202,8 +220,8 @@ impl SteadySliding {
         builder(grid, geometry, material, options)?.sliding_memory().or_raise()
     }
 
-    fn __repr__(&self) -> String {
-        let [n1, n2] = self.sliding.fields().grid().cells();
+    fn __repr__(slf: Shared<'_, Self>) -> String {
+        let [n1, n2] = slf.sliding.fields().grid().cells();
         format!("SteadySliding({n1} × {n2} cells)")
     }
 }
@@ -251,12 +269,12 @@ impl SlidingTable {
             ("dissipation", ("dissipation", "W", sl::SlidingReport::dissipation)),
         ];
         let (name, unit, value) = choice("column", column, &charts)?;
-        py.detach(|| self.0.chart(quantity(name, unit), value).draw()).or_raise().map(Picture)
+        free(py, || self.0.chart(quantity(name, unit), value).draw()).or_raise().map(Picture)
     }
 
     /// Writes the table as a CSV file.
     fn write_csv(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        py.detach(|| self.0.write_csv(path)).or_raise()
+        free(py, || self.0.write_csv(path)).or_raise()
     }
 
     fn __len__(&self) -> usize {

@@ -10,8 +10,10 @@ use viscocontact::output::{self as vo, Earlier, Field, Format, Metadata};
 use crate::contact::ViscoelasticContact;
 use crate::errors::{OrRaise, choice};
 use crate::fields::{Showing, Shown};
+use crate::interrupt::free;
 use crate::reports::StepReport;
 use crate::states_contact::StatesContact;
+use crate::used::{Shared, Taken};
 
 pub fn metadata(title: &str, notes: Option<&Bound<'_, PyDict>>) -> PyResult<Metadata> {
     notes.into_iter().flatten().try_fold(Metadata::new(title), |metadata, (key, value)| {
@@ -26,11 +28,11 @@ const EARLIER: [(&str, Earlier); 3] =
 macro_rules! with_either {
     ($given:ident, $contact:ident => $value:expr) => {
         if let Ok(contact) = $given.cast::<ViscoelasticContact>() {
-            let held = contact.borrow();
+            let held = Shared::try_from(contact)?;
             let $contact = held.get()?;
             $value.or_raise()
         } else if let Ok(contact) = $given.cast::<StatesContact>() {
-            let held = contact.borrow();
+            let held = Shared::try_from(contact)?;
             let $contact = held.get()?;
             $value.or_raise()
         } else {
@@ -74,8 +76,13 @@ impl CsvHistory {
 
     /// Appends the row of the last step, with the values of the additional columns.
     #[pyo3(signature = (contact, report, columns=vec![]))]
-    fn record(&mut self, contact: &Bound<'_, PyAny>, report: &StepReport, columns: Vec<f64>) -> PyResult<()> {
-        with_either!(contact, contact => self.0.record(contact, &report.0, &columns))
+    fn record(
+        mut slf: Taken<'_, Self>,
+        contact: &Bound<'_, PyAny>,
+        report: &StepReport,
+        columns: Vec<f64>,
+    ) -> PyResult<()> {
+        with_either!(contact, contact => slf.0.record(contact, &report.0, &columns))
     }
 }
 
@@ -124,9 +131,10 @@ impl FrameSeries {
     }
 
     /// Writes the state of the contact as the next frame, and returns its path.
-    fn record(&mut self, py: Python<'_>, contact: Showing<'_>) -> PyResult<PathBuf> {
+    fn record(mut slf: Taken<'_, Self>, py: Python<'_>, contact: Showing<'_>) -> PyResult<PathBuf> {
         let contact = contact.shown()?;
-        py.detach(|| self.0.record(contact)).or_raise()
+        let series = &mut slf.0;
+        free(py, || series.record(contact)).or_raise()
     }
 }
 
@@ -139,7 +147,7 @@ getters! {FrameSeries, of:
 impl ViscoelasticContact {
     /// The scene as JSON on one line: grid, settings, materials, units and conventions.
     #[pyo3(signature = (title="", notes=None))]
-    fn describe(&self, title: &str, notes: Option<&Bound<'_, PyDict>>) -> PyResult<String> {
-        Ok(metadata(title, notes)?.json(self.get()?))
+    fn describe(slf: Shared<'_, Self>, title: &str, notes: Option<&Bound<'_, PyDict>>) -> PyResult<String> {
+        Ok(metadata(title, notes)?.json(slf.get()?))
     }
 }
