@@ -20,25 +20,8 @@ use crate::used::{Function, Shared, Taken, Traversed};
 type Pickled<'py> =
     (Bound<'py, PyAny>, (Bound<'py, PyType>, &'static str, Py<PyTuple>, Option<Py<PyDict>>), Bound<'py, PyBytes>);
 
-/// Both kinds of contacts in memory.
-trait InMemory {
-    fn in_memory(self) -> PyResult<Vec<u8>>;
-}
-
-impl InMemory for Vec<u8> {
-    fn in_memory(self) -> PyResult<Vec<u8>> {
-        Ok(self)
-    }
-}
-
-impl InMemory for viscocontact::Result<Vec<u8>> {
-    fn in_memory(self) -> PyResult<Vec<u8>> {
-        self.or_raise()
-    }
-}
-
 macro_rules! both {
-    ($contact:ident) => {
+    ($contact:ident, $bytes:ident => $saved:expr) => {
         #[pymethods]
         impl $contact {
             /// Follows a load to the time `until` [s]: an iterator over the reports of the steps.
@@ -122,8 +105,8 @@ macro_rules! both {
                 let of = Shared::try_from(slf)?;
                 let (again, arguments) = of.recipe.reduce(slf.get_type())?;
                 let contact = of.get()?;
-                let bytes = free(slf.py(), || contact.to_bytes());
-                Ok((again, arguments, PyBytes::new(slf.py(), &bytes.in_memory()?)))
+                let $bytes = free(slf.py(), || contact.to_bytes());
+                Ok((again, arguments, PyBytes::new(slf.py(), &$saved)))
             }
 
             fn __traverse__(&self, visit: PyVisit<'_>) -> Traversed {
@@ -144,5 +127,5 @@ macro_rules! both {
     };
 }
 
-both!(ViscoelasticContact);
-both!(StatesContact);
+both!(ViscoelasticContact, bytes => bytes.or_raise()?);
+both!(StatesContact, bytes => bytes);

@@ -6,12 +6,9 @@ use std::io;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use pyo3::create_exception;
-use pyo3::exceptions::{
-    PyException, PyFileExistsError, PyFileNotFoundError, PyMemoryError, PyNotImplementedError, PyOSError,
-    PyPermissionError, PyRuntimeError, PyValueError,
-};
+use pyo3::exceptions::{PyException, PyMemoryError, PyNotImplementedError, PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
-use viscocontact::{Error, ErrorKind, UserError};
+use viscocontact::{Error, ErrorKind, FileError, UserError};
 use viscocontact_identify::Error as IdentifyError;
 
 create_exception!(
@@ -58,18 +55,33 @@ pub fn raise(error: &Error) -> PyErr {
     }
     let text = with_causes(error);
     match error.kind() {
-        ErrorKind::File => match error.io_kind() {
-            Some(io::ErrorKind::NotFound) => PyFileNotFoundError::new_err(text),
-            Some(io::ErrorKind::PermissionDenied) => PyPermissionError::new_err(text),
-            Some(io::ErrorKind::AlreadyExists) => PyFileExistsError::new_err(text),
-            _ => PyOSError::new_err(text),
-        },
+        // a name that is not allowed, as any other value
+        ErrorKind::File if matches!(error, Error::File(FileError::Extension { .. })) => PyValueError::new_err(text),
+        ErrorKind::File => os_error(error, text),
         ErrorKind::Memory => PyMemoryError::new_err(text),
         ErrorKind::Cancelled => Cancelled::new_err(text),
         ErrorKind::Convergence => ConvergenceError::new_err(text),
         ErrorKind::Unsupported => PyNotImplementedError::new_err(text),
         _ => PyValueError::new_err(text),
     }
+}
+
+/// The OSError of the kind that its number has, with the name of the file, as of `open`.
+fn os_error(error: &Error, text: String) -> PyErr {
+    let file = match error {
+        Error::File(FileError::Unreadable { file, .. }) => file.clone(),
+        Error::Checkpoint { path, .. } => path.display().to_string(),
+        Error::Output(error) => error.path().display().to_string(),
+        _ => return PyOSError::new_err(text),
+    };
+    // those of all systems; text has the file too, and says what to do
+    let number = match error.io_kind() {
+        Some(io::ErrorKind::NotFound) => 2,
+        Some(io::ErrorKind::PermissionDenied) => 13,
+        Some(io::ErrorKind::AlreadyExists) => 17,
+        _ => return PyOSError::new_err(text),
+    };
+    PyOSError::new_err((number, text, file))
 }
 
 /// The message, and those of its causes that it does not repeat.

@@ -3,13 +3,14 @@
 use pyo3::conversion::FromPyObjectOwned;
 use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyInt;
+use pyo3::types::PyBool;
 
 use crate::arrays::{Array, to_array};
 use crate::errors::OrRaise;
 
 /// A number of things: ValueError below 0, as of any number that is not allowed.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, IntoPyObject)]
+#[pyo3(transparent)]
 pub struct Count(pub usize);
 
 impl FromPyObject<'_, '_> for Count {
@@ -23,16 +24,6 @@ impl FromPyObject<'_, '_> for Count {
     }
 }
 
-impl<'py> IntoPyObject<'py> for Count {
-    type Target = PyInt;
-    type Output = Bound<'py, PyInt>;
-    type Error = std::convert::Infallible;
-
-    fn into_pyobject(self, py: Python<'py>) -> Result<Bound<'py, PyInt>, Self::Error> {
-        self.0.into_pyobject(py)
-    }
-}
-
 /// A number, or a number for each axis.
 pub struct PerAxis<T>(pub [T; 2]);
 
@@ -40,6 +31,9 @@ impl<'a, 'py, T: Copy + FromPyObjectOwned<'py>> FromPyObject<'a, 'py> for PerAxi
     type Error = PyErr;
 
     fn extract(given: Borrowed<'a, 'py, PyAny>) -> PyResult<PerAxis<T>> {
+        if given.is_instance_of::<PyBool>() {
+            return Err(PyTypeError::new_err(format!("{} is no number", &*given)));
+        }
         let both = given.extract::<T>().map(|same| [same; 2]).or_else(|_| given.extract::<[T; 2]>());
         let needed = "a number, whole where it counts cells, or a pair of them is needed";
         both.map(PerAxis).map_err(|_| PyTypeError::new_err(needed))

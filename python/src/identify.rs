@@ -15,6 +15,7 @@ use crate::errors::{Kept, OrRaise};
 use crate::fits::Fit;
 use crate::interrupt::{free, interruptible};
 use crate::recipe::{Recipe, Value};
+use crate::scene::unexpected;
 use crate::states::ElasticStates;
 use crate::used::{Function, goes_on};
 
@@ -45,6 +46,46 @@ fn nuisance(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Option<id::Nuisanc
         _ => {
             Err(PyTypeError::new_err(format!("{name}: a number (known), True (fitted) or (\"from\", start) is needed")))
         }
+    }
+}
+
+const OPTIONS: [&str; 11] =
+    ["contact_point", "offset", "drift", "tilt", "drag", "stiffness", "noise", "known_sigma", "robust", "fix", "start"];
+
+/// The identification with an option of this name.
+fn option(of: id::Identification, name: &str, given: &Bound<'_, PyAny>) -> PyResult<id::Identification> {
+    let known = || per_curve(name, given);
+    let set = |set: fn(id::Identification, id::PerCurve) -> id::Identification, of: id::Identification| {
+        Ok::<_, PyErr>(match known()? {
+            Some(known) => set(of, known),
+            None => of,
+        })
+    };
+    let names = of.model().parameters();
+    let each = |of: id::Identification, give: fn(id::Identification, &str, f64) -> id::Identification| {
+        named(given.cast()?)?.into_iter().try_fold(of, |of, (name, value)| match names.contains(&name) {
+            true => Ok(give(of, &name, value)),
+            false => Err(id::Error::UnknownParameter { name, names: names.join(", ") }).or_raise(),
+        })
+    };
+    match name {
+        "contact_point" => set(id::Identification::contact_point, of),
+        "offset" => set(id::Identification::offset, of),
+        "drift" => set(id::Identification::drift, of),
+        "tilt" => set(id::Identification::tilt, of),
+        "drag" => set(id::Identification::drag, of),
+        "stiffness" => set(id::Identification::stiffness, of),
+        "noise" => Ok(of.noise(match (given.extract::<f64>(), given.extract::<&str>()) {
+            (Ok(coefficient), _) => id::Noise::AutoregressiveWith(coefficient),
+            (_, Ok("white")) => id::Noise::White,
+            (_, Ok("autoregressive")) => id::Noise::Autoregressive,
+            _ => return Err(PyTypeError::new_err("noise: \"white\", \"autoregressive\" or its coefficient is needed")),
+        })),
+        "known_sigma" => Ok(of.known_sigma(given.extract()?)),
+        "robust" => Ok(if given.extract()? { of.robust() } else { of }),
+        "fix" => each(of, id::Identification::fix),
+        "start" => each(of, id::Identification::start),
+        _ => Err(unexpected("Identification", name, &OPTIONS)),
     }
 }
 
@@ -81,89 +122,27 @@ pub struct Identification {
 #[pymethods]
 impl Identification {
     #[new]
-    #[pyo3(signature = (model, *, contact_point=None, offset=None, drift=None, tilt=None, drag=None, stiffness=None, noise=None, known_sigma=None, robust=false, fix=None, start=None))]
-    #[allow(clippy::too_many_arguments)]
-    fn new(
-        py: Python<'_>,
-        model: Value<'_>,
-        contact_point: Option<&Bound<'_, PyAny>>,
-        offset: Option<&Bound<'_, PyAny>>,
-        drift: Option<&Bound<'_, PyAny>>,
-        tilt: Option<&Bound<'_, PyAny>>,
-        drag: Option<&Bound<'_, PyAny>>,
-        stiffness: Option<&Bound<'_, PyAny>>,
-        noise: Option<&Bound<'_, PyAny>>,
-        known_sigma: Option<f64>,
-        robust: bool,
-        fix: Option<&Bound<'_, PyDict>>,
-        start: Option<&Bound<'_, PyDict>>,
-    ) -> PyResult<Identification> {
-        type Setter = fn(id::Identification, id::PerCurve) -> id::Identification;
-        let mut identification = id::Identification::new(self::model(&model)?);
-        let nuisances: [(&str, Option<&Bound<'_, PyAny>>, Setter); 6] = [
-            ("contact_point", contact_point, id::Identification::contact_point),
-            ("offset", offset, id::Identification::offset),
-            ("drift", drift, id::Identification::drift),
-            ("tilt", tilt, id::Identification::tilt),
-            ("drag", drag, id::Identification::drag),
-            ("stiffness", stiffness, id::Identification::stiffness),
-        ];
-        for (name, given, set) in nuisances {
-            if let Some(known) = given.map(|given| per_curve(name, given)).transpose()?.flatten() {
-                identification = set(identification, known);
+    #[pyo3(
+        signature = (model, **options),
+        text_signature = "(model, *, contact_point=None, offset=None, drift=None, tilt=None, drag=None, stiffness=None, noise=None, known_sigma=None, robust=False, fix=None, start=None)"
+    )]
+    fn new(py: Python<'_>, model: Value<'_>, options: Option<Value<'_>>) -> PyResult<Identification> {
+        let options =
+            options.map_or_else(|| Ok(PyDict::new(py)), |given| Ok::<_, PyErr>(given.0.cast_into::<PyDict>()?))?;
+        let mut of = id::Identification::new(self::model(&model)?);
+        let twice =
+            |name: Bound<'_, PyAny>| PyTypeError::new_err(format!("give {name} in fix or in start, not in both"));
+        if let (Ok(Some(fix)), Ok(Some(start))) = (options.get_item("fix"), options.get_item("start")) {
+            let both = fix.try_iter()?.flatten().find(|name| start.contains(name).unwrap_or(false));
+            both.map_or(Ok(()), |name| Err(twice(name)))?;
+        }
+        for (name, given) in &options {
+            if !given.is_none() {
+                of = option(of, name.extract()?, &given)?;
             }
         }
-        if robust {
-            identification = identification.robust();
-        }
-        if let Some(noise) = noise {
-            identification = identification.noise(match (noise.extract::<f64>(), noise.extract::<&str>()) {
-                (Ok(coefficient), _) => id::Noise::AutoregressiveWith(coefficient),
-                (_, Ok("white")) => id::Noise::White,
-                (_, Ok("autoregressive")) => id::Noise::Autoregressive,
-                _ => {
-                    return Err(PyTypeError::new_err(
-                        "noise: \"white\", \"autoregressive\" or its coefficient is needed",
-                    ));
-                }
-            });
-        }
-        if let Some(sigma) = known_sigma {
-            identification = identification.known_sigma(sigma);
-        }
-        let names = identification.model().parameters();
-        if let (Some(fix), Some(start)) = (fix, start) {
-            for name in start.keys() {
-                if fix.contains(&name)? {
-                    return Err(PyTypeError::new_err(format!("give {name} in fix or in start, not in both")));
-                }
-            }
-        }
-        type Give = fn(id::Identification, &str, f64) -> id::Identification;
-        for (given, give) in [(fix, id::Identification::fix as Give), (start, id::Identification::start)] {
-            for (name, value) in given.map(named).transpose()?.unwrap_or_default() {
-                if !names.contains(&name) {
-                    return Err(id::Error::UnknownParameter { name, names: names.join(", ") }).or_raise();
-                }
-                identification = give(identification, &name, value);
-            }
-        }
-        identification.check().or_raise()?;
-        let keywords = dict! { py;
-            "contact_point": contact_point,
-            "offset": offset,
-            "drift": drift,
-            "tilt": tilt,
-            "drag": drag,
-            "stiffness": stiffness,
-            "noise": noise,
-            "known_sigma": known_sigma,
-            "robust": robust,
-            "fix": fix,
-            "start": start,
-        };
-        let recipe = Recipe::new(py, "", (model,))?.with_keywords(Some(&keywords))?;
-        Ok(Identification { of: identification, recipe })
+        of.check().or_raise()?;
+        Ok(Identification { of, recipe: Recipe::new(py, "", (model,))?.with_keywords(Some(&options))? })
     }
 
     /// Fits a curve, or several of one material together.

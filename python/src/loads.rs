@@ -179,7 +179,7 @@ impl LoadHistory {
             })
         };
         let made = ld::FnHistory::fallible(call).with_breakpoints(&breakpoints).or_raise()?;
-        Ok(LoadHistory::by(Recipe::new(py, "function", (&load, breakpoints))?.calling([load]), made))
+        Ok(LoadHistory::by(Recipe::new(py, "function", (load.clone(), breakpoints))?.calling([load]), made))
     }
 
     /// The load at a time [s].

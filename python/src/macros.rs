@@ -121,25 +121,17 @@ macro_rules! numbers {
                     .map_err(|error| pyo3::exceptions::PyValueError::new_err(error.to_string()))
             }
 
-            fn _to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, pyo3::types::PyBytes>> {
-                let bytes = postcard::to_allocvec(&self.0);
-                let bytes = bytes.map_err(|error| pyo3::exceptions::PyValueError::new_err(error.to_string()))?;
-                Ok(pyo3::types::PyBytes::new(py, &bytes))
-            }
-
             #[allow(clippy::type_complexity)]
             fn __reduce__<'py>(
                 slf: &Bound<'py, Self>,
             ) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, pyo3::types::PyBytes>,))> {
-                Ok((slf.get_type().getattr("_of_bytes")?, (slf.get()._to_bytes(slf.py())?,)))
+                let bytes = postcard::to_allocvec(&slf.get().0);
+                let bytes = bytes.map_err(|error| pyo3::exceptions::PyValueError::new_err(error.to_string()))?;
+                Ok((slf.get_type().getattr("_of_bytes")?, (pyo3::types::PyBytes::new(slf.py(), &bytes),)))
             }
 
             fn __eq__(&self, other: &$class) -> bool {
                 self.0 == other.0
-            }
-
-            fn __hash__(&self, py: Python<'_>) -> PyResult<isize> {
-                self._to_bytes(py)?.hash()
             }
         }
     };

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use pyo3::exceptions::PyTypeError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use viscocontact::geometry::{self as geo, Anisotropy, Form, LengthUnit, RoughSpec, Roughness};
@@ -40,13 +40,19 @@ use crate::shapes::Shape;
 pub struct HeightMap(Arc<geo::HeightMap>);
 
 impl HeightMap {
+    /// Refuses a map of which nothing is known.
+    fn known(map: geo::HeightMap) -> PyResult<Arc<geo::HeightMap>> {
+        let [n1, n2] = map.cells();
+        if map.missing() < n1 * n2 { Ok(Arc::new(map)) } else { Err(PyValueError::new_err("heights: none is known")) }
+    }
+
     /// A map that is made again from its heights, whatever its file was.
     fn made(py: Python<'_>, map: geo::HeightMap) -> PyResult<Py<HeightMap>> {
         Py::new(py, HeightMap::parts(py, map)?)
     }
 
     fn parts(py: Python<'_>, map: geo::HeightMap) -> PyResult<PyClassInitializer<HeightMap>> {
-        let map = Arc::new(map);
+        let map = HeightMap::known(map)?;
         let center = map.center();
         let shape = if center == [0.0; 2] {
             let heights = to_array(py, map.heights().to_vec(), &map.cells())?;
@@ -66,7 +72,7 @@ impl HeightMap {
         change: impl FnOnce(geo::HeightMap) -> viscocontact::Result<geo::HeightMap> + Send,
     ) -> PyResult<Py<HeightMap>> {
         let (py, map) = (slf.py(), (*slf.get().0).clone());
-        let map = Arc::new(free(py, || change(map)).or_raise()?);
+        let map = HeightMap::known(free(py, || change(map)).or_raise()?)?;
         let shape = Shape::made(py, maker, arguments, Arc::clone(&map) as _)?;
         Py::new(py, PyClassInitializer::from(shape).add_subclass(HeightMap(map)))
     }
@@ -96,13 +102,14 @@ impl HeightMap {
     /// Traceback (most recent call last):
     /// FileNotFoundError: ...
     #[staticmethod]
-    #[pyo3(signature = (path, *, lengths=None, unit=None, points=false, profile=false, decimal_comma=None, missing_height=None))]
+    #[pyo3(signature = (path, *, lengths=None, unit=None, orientation="array", points=false, profile=false, decimal_comma=None, missing_height=None))]
     #[allow(clippy::too_many_arguments)]
     fn read(
         py: Python<'_>,
         path: PathBuf,
         lengths: Option<PerAxis<f64>>,
         unit: Option<&str>,
+        orientation: &str,
         points: bool,
         profile: bool,
         decimal_comma: Option<bool>,
@@ -134,11 +141,13 @@ impl HeightMap {
                     free(py, || geo::HeightMap::from_profile(file, unit, unit, format))
                 } else {
                     let lengths = lengths.ok_or_else(|| needs("the lengths of its sides in m, as lengths=(l1, l2)"))?;
-                    if ending == "npy" {
-                        free(py, || geo::HeightMap::from_npy(file, lengths, unit))
-                    } else {
-                        free(py, || geo::HeightMap::from_text(file, lengths, unit, format))
-                    }
+                    let is_picture = choice("orientation", orientation, &[("array", false), ("picture", true)])?;
+                    return HeightMap::made(
+                        py,
+                        free(py, || matrix(file, &ending, lengths, (unit, format), is_picture))
+                            .or_raise()
+                            .and_then(|map| squared(map, lengths))?,
+                    );
                 }
             }
         };
@@ -338,6 +347,39 @@ getters! {HeightMap, of:
     /// The grid whose cells have the points of the map as their centres.
     grid: Grid = Grid(of.grid());
 }
+
+/// A map of a matrix: as an array of this package, whose entry (i, j) is at the places i along x1 and j along x2; or as a picture, whose lines are
+/// along x1, the first at the maximum x2. NPY files are read as the one, texts as the other, and turned where they are not.
+fn matrix(
+    file: File,
+    ending: &str,
+    [l1, l2]: [f64; 2],
+    (unit, format): (LengthUnit, TextFormat),
+    is_picture: bool,
+) -> viscocontact::Result<geo::HeightMap> {
+    match (ending, is_picture) {
+        ("npy", false) => geo::HeightMap::from_npy(file, [l1, l2], unit),
+        ("npy", true) => Ok(geo::HeightMap::from_npy(file, [l2, l1], unit)?.flipped([true, false]).transposed()),
+        (_, false) => Ok(geo::HeightMap::from_text(file, [l2, l1], unit, format)?.transposed().flipped([true, false])),
+        (_, true) => geo::HeightMap::from_text(file, [l1, l2], unit, format),
+    }
+}
+
+/// Refuses sides that make squares of the cells if they are exchanged, and only then.
+fn squared(map: geo::HeightMap, [l1, l2]: [f64; 2]) -> PyResult<geo::HeightMap> {
+    let [n1, n2] = map.cells().map(|n| n as f64);
+    let is_square = |a: f64, b: f64| (a / n1 / (b / n2) - 1.0).abs() < SQUARE;
+    if is_square(l1, l2) || !is_square(l2, l1) {
+        return Ok(map);
+    }
+    Err(PyValueError::new_err(format!(
+        "lengths = ({l1}, {l2}) are those of the other axes: the map has {n1} points along x1 and {n2} along x2; give lengths=({l2}, {l1}), or \
+         the other orientation, \"array\" or \"picture\""
+    )))
+}
+
+/// Sides of a cell that differ by less, relative, are equal.
+const SQUARE: f64 = 1e-3;
 
 fn opened(path: &Path) -> PyResult<File> {
     File::open(path).map_err(|error| {

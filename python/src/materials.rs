@@ -88,7 +88,7 @@ makers! {Material, py:
 #[pymethods]
 impl Material {
     #[new]
-    #[pyo3(signature = (rheology, *, nu=None, bulk_modulus=None, bulk_ratio=None))]
+    #[pyo3(signature = (rheology, nu=None, *, bulk_modulus=None, bulk_ratio=None))]
     fn new(
         py: Python<'_>,
         rheology: Bound<'_, PyAny>,

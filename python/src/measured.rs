@@ -11,6 +11,7 @@ use viscocontact::rheology::{self as rh, Experiment, Units};
 
 use crate::arrays::column;
 use crate::errors::{OrRaise, choice};
+use crate::grid::Count;
 use crate::interrupt::free;
 use crate::materials::Tension;
 use crate::recipe::{Recipe, Value};
@@ -186,10 +187,13 @@ pub fn text_table(path: &Path, text: Option<&[u8]>, reading: Option<&Bound<'_, P
             _ if value.is_none() => {}
             "decimal_comma" => format = format.with_decimal_comma(value.extract()?),
             "delimiter" => format = format.with_delimiter(choice("delimiter", value.extract()?, &delimiters)?),
-            "skipped_lines" => format = format.with_skipped_lines(value.extract()?),
+            "skipped_lines" => format = format.with_skipped_lines(value.extract::<Count>()?.0 as u64),
             "headings" => headings = value.extract()?,
             "only" => only = Some(value.extract::<Vec<String>>()?),
-            name => return Err(unexpected(name)),
+            name => {
+                let known = ["decimal_comma", "delimiter", "skipped_lines", "headings", "only"];
+                return Err(unexpected("from_csv", name, &known));
+            }
         }
     }
     let mut table = match text {

@@ -2,8 +2,8 @@
 
 use pyo3::gc::PyVisit;
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict, PyList, PyString, PyTuple, PyType};
-use pyo3::{Borrowed, PyTypeInfo, intern};
+use pyo3::types::{PyDict, PyFloat, PyInt, PyTuple, PyType};
+use pyo3::{Borrowed, PyTypeInfo};
 
 use crate::used::{Function, Traversed};
 
@@ -90,22 +90,14 @@ impl Recipe {
     /// The call in one line; of arrays their shape alone.
     pub fn repr(&self, class: &Bound<'_, PyType>) -> PyResult<String> {
         let (py, class) = (class.py(), self.class(class.clone()));
-        let mut shown: Vec<String> =
-            self.arguments.bind(py).iter().map(|value| shown(&value)).collect::<PyResult<_>>()?;
-        for (name, value) in self.keywords.iter().flat_map(|keywords| keywords.bind(py)) {
-            if !value.is_none() {
-                shown.push(format!("{name}={}", self::shown(&value)?));
-            }
-        }
-        if self.maker == "__add__" {
-            return Ok(shown.join(" + "));
-        }
-        let dot = if self.maker.is_empty() { "" } else { "." };
-        Ok(format!("{}{dot}{}({})", class.name()?, self.maker, shown.join(", ")))
+        let arguments = (class, self.maker, &self.arguments, &self.keywords);
+        py.import("viscocontact._values")?.call_method1("shown", arguments)?.extract()
     }
 }
 
 /// An argument that a recipe keeps as it was: of an iterator its values, of an array a copy.
+#[derive(IntoPyObject)]
+#[pyo3(transparent)]
 pub struct Value<'py>(pub Bound<'py, PyAny>);
 
 impl<'py> FromPyObject<'_, 'py> for Value<'py> {
@@ -124,51 +116,13 @@ impl<'py> std::ops::Deref for Value<'py> {
     }
 }
 
-impl<'py> IntoPyObject<'py> for Value<'py> {
-    type Target = PyAny;
-    type Output = Bound<'py, PyAny>;
-    type Error = PyErr;
-
-    fn into_pyobject(self, _py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        Ok(self.0)
-    }
-}
-
 /// A value of a call as it is now: what the caller may change later is copied, down to the entries of sequences.
 fn own<'py>(value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-    let py = value.py();
-    if let Ok(tuple) = value.cast_exact::<PyTuple>() {
-        let entries: Vec<_> = tuple.iter().map(|entry| own(&entry)).collect::<PyResult<_>>()?;
-        return Ok(PyTuple::new(py, entries)?.into_any());
-    }
-    if value.is_exact_instance_of::<PyList>() || value.hasattr(intern!(py, "__next__"))? {
-        let entries: Vec<_> = value.try_iter()?.map(|entry| own(&entry?)).collect::<PyResult<_>>()?;
-        return Ok(PyList::new(py, entries)?.into_any());
-    }
-    if let Ok(dict) = value.cast_exact::<PyDict>() {
-        let copy = PyDict::new(py);
-        dict.iter().try_for_each(|(key, entry)| copy.set_item(key, own(&entry)?))?;
-        return Ok(copy.into_any());
-    }
-    // arrays, and other sequences; objects of this package do not change
-    let is_fixed = value.is_instance_of::<PyString>() || value.is_instance_of::<PyBytes>() || value.is_callable();
-    let is_own = || value.get_type().module().is_ok_and(|module| module.to_string().starts_with("viscocontact"));
-    if is_fixed || !value.hasattr("__len__")? || is_own() {
+    // most are numbers, and objects that do not change
+    if value.is_exact_instance_of::<PyFloat>() || value.is_exact_instance_of::<PyInt>() {
         return Ok(value.clone());
     }
-    // what is read from elsewhere, as by h5py, cannot be copied, but its numbers can
-    let copied = py.import("copy")?.call_method1("copy", (value,));
-    copied.or_else(|_| py.import("numpy")?.call_method1("array", (value,)))
-}
-
-fn shown(value: &Bound<'_, PyAny>) -> PyResult<String> {
-    if value.hasattr("dtype")?
-        && let Ok(shape) = value.getattr("shape")?.extract::<Vec<usize>>()
-    {
-        return Ok(format!("<array {shape:?}>"));
-    }
-    let text = value.repr()?.to_string();
-    Ok(if text.chars().count() > 60 { format!("{}…", text.chars().take(59).collect::<String>()) } else { text })
+    value.py().import("viscocontact._values")?.call_method1("own", (value,))
 }
 
 /// A number as Python writes it, to six digits.

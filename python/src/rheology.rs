@@ -7,7 +7,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use viscocontact::rheology::{self as rh, CreepSpectrum, Rheology as Body};
 
-use crate::arrays::{FROM_ZERO, column, mapped, never, number, pairs, values};
+use crate::arrays::{FROM_ZERO, column, mapped, never, pairs, values};
 use crate::errors::{OrRaise, no_violation};
 use crate::interrupt::free;
 use crate::recipe::{Recipe, Value};
@@ -126,7 +126,7 @@ impl Rheology {
     fn function(py: Python<'_>, creep_compliance: Function) -> PyResult<Rheology> {
         let function = creep_compliance.clone();
         let made = rh::FnRheology::fallible(move |t: f64| function.call::<f64>((t,)));
-        Ok(Rheology::by(Recipe::new(py, "function", (&creep_compliance,))?.calling([creep_compliance]), made))
+        Ok(Rheology::by(Recipe::new(py, "function", (creep_compliance.clone(),))?.calling([creep_compliance]), made))
     }
 
     /// This body fitted by an exponential series over the times from `first` to `last` [s] within a relative error.
@@ -166,12 +166,11 @@ impl Rheology {
         let spectrum = self.spectrum()?;
         let nan = Complex64::new(f64::NAN, f64::NAN);
         let modulus = |omega: f64| if omega.is_nan() { nan } else { spectrum.complex_modulus(omega) };
-        if let Some(omega) = number(omega) {
-            return Ok(modulus(omega).into_pyobject(py)?.into_any());
-        }
         let (values, shape) = values("omega", omega)?;
         let moduli: Vec<Complex64> = values.into_iter().map(modulus).collect();
-        Ok(moduli.into_pyarray(py).reshape(shape)?.into_any())
+        let moduli = moduli.into_pyarray(py).reshape(&shape[..])?.into_any();
+        // of a number, a number
+        if shape.is_empty() { moduli.get_item(()) } else { Ok(moduli) }
     }
 }
 

@@ -122,7 +122,7 @@ impl Shape {
     fn function(py: Python<'_>, gap: Function) -> PyResult<Shape> {
         let function = gap.clone();
         let made = geo::FnGeometry::fallible(move |x1: f64, x2: f64| function.call::<f64>((x1, x2)));
-        Ok(Shape::by(Recipe::new(py, "function", (&gap,))?.calling([gap]), made))
+        Ok(Shape::by(Recipe::new(py, "function", (gap.clone(),))?.calling([gap]), made))
     }
 
     /// A gap [m] for each cell of `grid`: any array of its shape, `+inf` where there is nothing to touch, as beside the grid.
@@ -134,9 +134,11 @@ impl Shape {
     /// >>> Shape.gap_on(grid, (x1**2 + x2**2) / 2e-2)
     /// Shape.gap_on(Grid((4, 4), (0.001, 0.001)), <array [4, 4]>)
     #[staticmethod]
-    fn gap_on(py: Python<'_>, grid: Bound<'_, Grid>, gap: Value<'_>) -> PyResult<Shape> {
+    fn gap_on(py: Python<'_>, grid: Bound<'_, Grid>, gap: Bound<'_, PyAny>) -> PyResult<Shape> {
         let on = grid.get().0.clone();
         let values = crate::arrays::field("gap", &gap, on.cells())?;
+        // as it was read: another thread may write into the array
+        let gap = to_array(py, values.clone(), &on.cells())?;
         Shape::made(py, "gap_on", (grid, gap), Arc::new(GapOnCells { grid: on, gap: values }))
     }
 

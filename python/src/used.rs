@@ -14,11 +14,12 @@ use pyo3::{Borrowed, PyClass};
 /// What `__traverse__` returns.
 pub type Traversed = Result<(), PyTraverseError>;
 
-/// An object to look at.
-pub struct Shared<'py, T: PyClass>(PyRef<'py, T>);
+/// An object to look at, and one to change.
+pub type Shared<'py, T> = Used<PyRef<'py, T>>;
+pub type Taken<'py, T> = Used<PyRefMut<'py, T>>;
 
-/// An object to change.
-pub struct Taken<'py, T: PyClass<Frozen = False>>(PyRefMut<'py, T>);
+/// An object that no other call uses meanwhile.
+pub struct Used<G>(G);
 
 fn in_use<T: PyClass>() -> PyErr {
     let name = T::NAME;
@@ -32,7 +33,7 @@ impl<'py, T: PyClass> TryFrom<&Bound<'py, T>> for Shared<'py, T> {
     type Error = PyErr;
 
     fn try_from(object: &Bound<'py, T>) -> PyResult<Self> {
-        object.try_borrow().map(Shared).map_err(|_| in_use::<T>())
+        object.try_borrow().map(Used).map_err(|_| in_use::<T>())
     }
 }
 
@@ -40,7 +41,7 @@ impl<'py, T: PyClass<Frozen = False>> TryFrom<&Bound<'py, T>> for Taken<'py, T> 
     type Error = PyErr;
 
     fn try_from(object: &Bound<'py, T>) -> PyResult<Self> {
-        object.try_borrow_mut().map(Taken).map_err(|_| in_use::<T>())
+        object.try_borrow_mut().map(Used).map_err(|_| in_use::<T>())
     }
 }
 
@@ -52,24 +53,16 @@ impl<'py, T: PyClass> FromPyObject<'_, 'py> for Shared<'py, T> {
     }
 }
 
-impl<T: PyClass> Deref for Shared<'_, T> {
-    type Target = T;
+impl<G: Deref> Deref for Used<G> {
+    type Target = G::Target;
 
-    fn deref(&self) -> &T {
+    fn deref(&self) -> &G::Target {
         &self.0
     }
 }
 
-impl<T: PyClass<Frozen = False>> Deref for Taken<'_, T> {
-    type Target = T;
-
-    fn deref(&self) -> &T {
-        &self.0
-    }
-}
-
-impl<T: PyClass<Frozen = False>> DerefMut for Taken<'_, T> {
-    fn deref_mut(&mut self) -> &mut T {
+impl<G: DerefMut> DerefMut for Used<G> {
+    fn deref_mut(&mut self) -> &mut G::Target {
         &mut self.0
     }
 }
@@ -106,16 +99,6 @@ impl FromPyObject<'_, '_> for Function {
 }
 
 impl<'py> IntoPyObject<'py> for Function {
-    type Target = PyAny;
-    type Output = Bound<'py, PyAny>;
-    type Error = PyErr;
-
-    fn into_pyobject(self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        (&self).into_pyobject(py)
-    }
-}
-
-impl<'py> IntoPyObject<'py> for &Function {
     type Target = PyAny;
     type Output = Bound<'py, PyAny>;
     type Error = PyErr;
