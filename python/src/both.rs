@@ -31,7 +31,8 @@ macro_rules! both {
             /// load : LoadHistory, Load (held), sequence of (time, load), or function of time that returns a Load
             /// until : float
             /// tolerance : float, default 1e-3
-            ///     Steps are as long as their estimated error in time allows.
+            ///     Steps are as long as their estimated error in time allows, and each contact problem is solved as accurately as this needs: less accurately
+            ///     than by the contact's own `tolerance`, which a run with `dt` takes.
             /// dt : float, optional
             ///     Equal steps of this length instead [s].
             /// stop_at : times, optional

@@ -15,7 +15,7 @@ use crate::held::Held;
 use crate::interrupt::{free, interruptible};
 use crate::loads::{Load, loads};
 use crate::materials::Material;
-use crate::recipe::Recipe;
+use crate::recipe::{Recipe, digits};
 use crate::reports::StepReport;
 use crate::scene::builder;
 use crate::shapes::{Shape, geometries};
@@ -44,7 +44,8 @@ const LONG: Duration = Duration::from_millis(10);
 /// times : (float, float) or (load, float), optional
 ///     The loading times over which the material is needed [s]: from the first to the last, or those of a load to the time `until`.
 /// tolerance : float, default 1e-6
-///     Of the contact problem, relative to the displacement.
+///     Of the contact problem, relative to the displacement. Runs (`follow`) solve it no more accurately than their own tolerance in time needs:
+///     `StepReport.residual` has what was reached.
 /// max_iterations : int, default 1000
 /// time_rule : "exponential" (default) or "exponential_linear"
 /// edge : "refuse" (default) or "allow"
@@ -232,12 +233,17 @@ impl ViscoelasticContact {
 
     fn __repr__(slf: Shared<'_, Self>) -> PyResult<String> {
         let of = slf.get()?;
-        let ([n1, n2], time, force, approach) = (of.grid().cells(), of.time(), of.force(), of.approach());
-        Ok(format!("ViscoelasticContact({n1} × {n2} cells, time={time} s, force={force:e} N, approach={approach:e} m)"))
+        let [n1, n2] = of.grid().cells();
+        let [time, force, approach] = [of.time(), of.force(), of.approach()].map(digits);
+        Ok(format!("ViscoelasticContact({n1} × {n2} cells, time={time} s, force={force} N, approach={approach} m)"))
     }
 }
 
 /// A state of a contact in memory.
+///
+/// >>> contact = ViscoelasticContact(Grid(32, 4e-3), Shape.sphere(10e-3), Material(Rheology.maxwell(1e6, 1.0)))
+/// >>> contact.snapshot()
+/// Snapshot(time=0 s)
 #[pyclass(frozen, module = "viscocontact")]
 pub struct Snapshot(ct::Snapshot);
 

@@ -31,6 +31,11 @@ use crate::used::{Function, Traversed};
 /// tip : ElasticStates
 /// stiffness : float, optional
 ///     Of the spring between base and tip [N/m]: the cantilever.
+///
+/// >>> tip = ElasticStates.sphere(5e-6)
+/// >>> experiment = Experiment.trapezoid(1e-6, (1.0, 3.0, 1.0), 0.5, tip)
+/// >>> len(experiment.times), float(experiment.drive.max())
+/// (11, 1e-06)
 #[pyclass(frozen, module = "viscocontact")]
 pub struct Experiment {
     pub of: id::Experiment,
@@ -142,6 +147,11 @@ impl Experiment {
 /// A measured curve: an experiment and the force [N] at each of its times, positive where it presses.
 ///
 /// Raises ValueError if the lengths differ or a value is NaN.
+///
+/// >>> experiment = Experiment([0.0, 0.5, 1.0], [0.0, 0.5e-6, 1e-6], ElasticStates.sphere(5e-6))
+/// >>> curve = Curve(experiment, [0.0, 1e-9, 3e-9])
+/// >>> len(curve), len(curve.within(0.0, 0.9))
+/// (3, 2)
 #[pyclass(frozen, module = "viscocontact")]
 pub struct Curve {
     pub of: id::Curve,
@@ -294,6 +304,12 @@ impl Curve {
 ///     [s]
 /// force, deflection, drive, depth : sequence of float, optional
 ///     Force [N], positive where it presses; deflection of the spring, position of its base, depth of the tip [m].
+///
+/// >>> import numpy as np
+/// >>> t = np.linspace(0.0, 1.0, 20)
+/// >>> recording = Recording(t, force=3e-9 * t**1.5, depth=1e-6 * t)
+/// >>> len(recording.curve(ElasticStates.sphere(5e-6)))
+/// 20
 #[pyclass(frozen, module = "viscocontact")]
 pub struct Recording(id::Recording);
 

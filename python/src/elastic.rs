@@ -16,6 +16,7 @@ use crate::grid::Grid;
 use crate::interrupt::{free, interruptible};
 use crate::kernels::InfluenceKernel;
 use crate::loads::loads;
+use crate::recipe::digits;
 use crate::scene::settings;
 use crate::shapes::geometries;
 use crate::used::{Shared, Taken};
@@ -117,6 +118,10 @@ impl ElasticContact {
     fn __repr__(slf: Shared<'_, Self>) -> PyResult<String> {
         let of = slf.shown()?;
         let [n1, n2] = of.grid().cells();
-        Ok(format!("ElasticContact({n1} × {n2} cells, force={:e} N, approach={:e} m)", of.force(), of.approach()))
+        Ok(format!(
+            "ElasticContact({n1} × {n2} cells, force={} N, approach={} m)",
+            digits(of.force()),
+            digits(of.approach())
+        ))
     }
 }

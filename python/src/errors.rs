@@ -15,13 +15,13 @@ create_exception!(
     viscocontact,
     Cancelled,
     PyException,
-    "The call was ended by its caller: a report of progress returned False."
+    "The call was ended by its caller: a report of progress returned False.\n\n>>> contact = ViscoelasticContact(Grid(16, 4e-3), Shape.sphere(10e-3), Material(Rheology.maxwell(1e6, 1.0)))\n>>> list(contact.follow(Load.force(0.5), 1.0, progress=lambda share: False))\nTraceback (most recent call last):\nviscocontact.Cancelled: ..."
 );
 create_exception!(
     viscocontact,
     ConvergenceError,
     PyRuntimeError,
-    "A search did not converge, or needs shorter steps than there are. The message says which, with its numbers."
+    "A search did not converge, or needs shorter steps than there are. The message says which, with its numbers.\n\n>>> import numpy as np\n>>> hills = HeightMap.rough(Grid(32, 1e-3), 0.5e-3, 0.1e-3, rms_slope=0.3)\n>>> contact = ElasticContact(Grid(32, 1e-3), hills, 1e6, max_iterations=1, edge=\"allow\")\n>>> contact.solve(Load.force(0.05))\nTraceback (most recent call last):\nviscocontact.ConvergenceError: ..."
 );
 
 /// Raises the errors of both crates, at the end of a call: first what a function of the user raised in it, whether the crate noticed or not.

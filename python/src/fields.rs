@@ -12,6 +12,7 @@ use crate::errors::OrRaise;
 use crate::grid::Grid;
 use crate::interrupt::free;
 use crate::loads::Load;
+use crate::recipe::digits;
 use crate::reports::BodyState;
 use crate::sliding::SteadySliding;
 use crate::used::Shared;
@@ -24,12 +25,6 @@ pub trait Shown {
 impl Shown for ViscoelasticContact {
     fn shown(&self) -> PyResult<vf::Fields<'_>> {
         self.get().map(vc::ViscoelasticContact::fields)
-    }
-}
-
-impl Shown for SteadySliding {
-    fn shown(&self) -> PyResult<vf::Fields<'_>> {
-        Ok(self.sliding.fields())
     }
 }
 
@@ -60,7 +55,7 @@ pub struct Fields(pub vf::KeptFields);
 impl Fields {
     fn __repr__(&self) -> String {
         let (of, [n1, n2]) = (self.0.fields(), self.0.fields().grid().cells());
-        format!("Fields({n1} × {n2} cells, force={:e} N, approach={:e} m)", of.force(), of.approach())
+        format!("Fields({n1} × {n2} cells, force={} N, approach={} m)", digits(of.force()), digits(of.approach()))
     }
 }
 

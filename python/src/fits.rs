@@ -24,6 +24,12 @@ use crate::states::ElasticStates;
 use crate::used::Traversed;
 
 /// One identified parameter.
+///
+/// >>> experiment = Experiment.trapezoid(1e-6, (0.2, 0.5, 0.2), 0.05, ElasticStates.sphere(5e-6))
+/// >>> maxwell = Identification("maxwell")
+/// >>> fit = maxwell.fit(Curve(experiment, maxwell.respond(experiment, {"E0": 2e3, "tau": 0.5})[0]))
+/// >>> fit["tau"].name, round(fit["tau"].value, 6), fit["tau"].scale
+/// ('tau', 0.5, 'logarithm')
 #[pyclass(frozen, module = "viscocontact")]
 pub struct Estimate {
     of: id::Estimate,
@@ -68,6 +74,12 @@ getters! {Estimate.of, of:
 }
 
 /// The result of a fit: `fit["E0"]` is the estimate of a parameter.
+///
+/// >>> experiment = Experiment.trapezoid(1e-6, (0.2, 0.5, 0.2), 0.05, ElasticStates.sphere(5e-6))
+/// >>> maxwell = Identification("maxwell")
+/// >>> fit = maxwell.fit(Curve(experiment, maxwell.respond(experiment, {"E0": 2e3, "tau": 0.5})[0]))
+/// >>> round(fit.modulus(0.5) / fit.modulus(0.0), 4)     # exp(-1)
+/// 0.3679
 #[pyclass(frozen, module = "viscocontact")]
 pub struct Fit {
     pub fit: id::Fit,
@@ -316,6 +328,15 @@ impl Fit {
 }
 
 /// Writes a table of fits as a CSV file with a row for each parameter.
+///
+/// >>> import pathlib, tempfile
+/// >>> experiment = Experiment.trapezoid(1e-6, (0.2, 0.5, 0.2), 0.05, ElasticStates.sphere(5e-6))
+/// >>> maxwell = Identification("maxwell")
+/// >>> fit = maxwell.fit(Curve(experiment, maxwell.respond(experiment, {"E0": 2e3, "tau": 0.5})[0]))
+/// >>> path = pathlib.Path(tempfile.mkdtemp(), "fits.csv")
+/// >>> write_fits(path, [fit])
+/// >>> "tau" in path.read_text()
+/// True
 #[pyfunction]
 pub fn write_fits(py: Python<'_>, path: PathBuf, fits: Vec<Bound<'_, Fit>>) -> PyResult<()> {
     let summaries: Vec<id::Summary> = fits.iter().map(|fit| fit.get().fit.summary()).collect();

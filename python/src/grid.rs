@@ -24,6 +24,11 @@ impl FromPyObject<'_, '_> for Count {
     }
 }
 
+/// The same of an argument with a default.
+pub fn count(given: &Bound<'_, PyAny>) -> PyResult<usize> {
+    given.extract::<Count>().map(|count| count.0)
+}
+
 /// A number, or a number for each axis.
 pub struct PerAxis<T>(pub [T; 2]);
 

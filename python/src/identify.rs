@@ -238,6 +238,12 @@ getters! {Identification.of, of:
 /// (fit, difference, weight). Exceptions, as `Identification.fit_each` returns them, are left out.
 ///
 /// Raises ValueError if fits are of different curves.
+///
+/// >>> experiment = Experiment.trapezoid(1e-6, (0.2, 0.5, 0.2), 0.05, ElasticStates.sphere(5e-6))
+/// >>> force, _ = Identification("maxwell").respond(experiment, {"E0": 2e3, "tau": 0.5})
+/// >>> fits = [Identification(model).fit(Curve(experiment, force)) for model in ("elastic", "maxwell")]
+/// >>> ranked(fits)[0][0].model
+/// 'Maxwell'
 #[pyfunction]
 pub fn ranked(fits: Vec<Bound<'_, PyAny>>) -> PyResult<Vec<(Bound<'_, Fit>, f64, f64)>> {
     let fits: Vec<Bound<'_, Fit>> = fits.into_iter().filter_map(|fit| fit.cast_into::<Fit>().ok()).collect();

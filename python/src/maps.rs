@@ -4,7 +4,7 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::{PyTypeError, PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use viscocontact::geometry::{self as geo, Anisotropy, Form, LengthUnit, RoughSpec, Roughness};
@@ -12,7 +12,7 @@ use viscocontact::{FileError, TextFormat};
 
 use crate::arrays::{ALL, Array, mapped, never, plane, table, to_array};
 use crate::errors::{OrRaise, choice, raise};
-use crate::grid::{Count, Grid, PerAxis};
+use crate::grid::{Count, Grid, PerAxis, count};
 use crate::interrupt::free;
 use crate::shapes::Shape;
 
@@ -90,13 +90,21 @@ impl HeightMap {
     ) -> PyResult<PyClassInitializer<HeightMap>> {
         let (heights, cells) = plane("heights", heights)?;
         let map = geo::HeightMap::new(cells, lengths.0, heights).or_raise()?;
+        if let Err(doubt) = squared(&map, lengths.0) {
+            let text = std::ffi::CString::new(doubt.value(py).to_string())?;
+            PyErr::warn(py, &py.get_type::<PyUserWarning>(), &text, 1)?;
+        }
         HeightMap::parts(py, if periodic { map.periodic() } else { map })
     }
 
     /// Reads a map: SDF, SUR, PRO, GSF and X3P files by their content, in metres; NPY files and text (matrices, or with `points`
-    /// lines of x, y and height) need `unit`, and matrices `lengths` [m].
+    /// lines of x, y and height) need `unit`, and matrices `lengths` [m] along x1 and x2.
     ///
-    /// Raises OSError if the file cannot be read or understood, and says where.
+    /// `orientation` tells how a matrix lies, of NPY files and of text alike: "array" (default) as every array of this package, line i at the place i
+    /// along x1, which `numpy.save` and `numpy.savetxt` write; "picture" as programs of instruments export it, a line along x1, the first line at the
+    /// maximum x2.
+    ///
+    /// Raises OSError if the file cannot be read or understood, and says where; ValueError if the cells are square with `lengths` exchanged alone.
     ///
     /// >>> HeightMap.read("no_such_file.sdf")
     /// Traceback (most recent call last):
@@ -142,12 +150,9 @@ impl HeightMap {
                 } else {
                     let lengths = lengths.ok_or_else(|| needs("the lengths of its sides in m, as lengths=(l1, l2)"))?;
                     let is_picture = choice("orientation", orientation, &[("array", false), ("picture", true)])?;
-                    return HeightMap::made(
-                        py,
-                        free(py, || matrix(file, &ending, lengths, (unit, format), is_picture))
-                            .or_raise()
-                            .and_then(|map| squared(map, lengths))?,
-                    );
+                    let map = free(py, || matrix(file, &ending, lengths, (unit, format), is_picture)).or_raise()?;
+                    squared(&map, lengths)?;
+                    Ok(map)
                 }
             }
         };
@@ -227,7 +232,7 @@ impl HeightMap {
         Ok((HeightMap::made(py, new.map)?, error))
     }
 
-    /// Mean, rms height, skewness, kurtosis, rms slope, rms slopes along x1 and x2, and rms curvature, in SI units.
+    /// A dict of "mean", "rms_height" [m], "skewness", "kurtosis", "rms_slope", "rms_slopes" along x1 and x2, and "rms_curvature" [1/m].
     fn statistics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let of = free(py, || self.0.statistics()).or_raise()?;
         Ok(dict! { py;
@@ -284,7 +289,7 @@ impl HeightMap {
     /// >>> HeightMap.rough(Grid(64, 1e-3), 0.5e-3, 0.1e-3, rms_slope=0.1, seed=3).statistics()["rms_slope"].__round__(3)
     /// 0.1
     #[staticmethod]
-    #[pyo3(signature = (grid, longest, shortest, *, rms_slope=None, rms_height=None, hurst=0.8, roll_off=None, anisotropy=None, period=None, seed=Count(0)))]
+    #[pyo3(signature = (grid, longest, shortest, *, rms_slope=None, rms_height=None, hurst=0.8, roll_off=None, anisotropy=None, period=None, seed=0))]
     #[allow(clippy::too_many_arguments)]
     fn rough(
         py: Python<'_>,
@@ -297,14 +302,14 @@ impl HeightMap {
         roll_off: Option<f64>,
         anisotropy: Option<(f64, f64)>,
         period: Option<PerAxis<f64>>,
-        seed: Count,
+        #[pyo3(from_py_with = count)] seed: usize,
     ) -> PyResult<Py<HeightMap>> {
         let roughness = match (rms_slope, rms_height) {
             (Some(slope), None) => Roughness::RmsSlope(slope),
             (None, Some(height)) => Roughness::RmsHeight(height),
             _ => return Err(PyTypeError::new_err("give rms_slope or rms_height, one of them")),
         };
-        let mut spec = RoughSpec::new(longest, shortest, roughness).with_seed(seed.0 as u64).with_hurst(hurst);
+        let mut spec = RoughSpec::new(longest, shortest, roughness).with_seed(seed as u64).with_hurst(hurst);
         if let Some(roll_off) = roll_off {
             spec = spec.with_roll_off(roll_off);
         }
@@ -366,11 +371,11 @@ fn matrix(
 }
 
 /// Refuses sides that make squares of the cells if they are exchanged, and only then.
-fn squared(map: geo::HeightMap, [l1, l2]: [f64; 2]) -> PyResult<geo::HeightMap> {
+fn squared(map: &geo::HeightMap, [l1, l2]: [f64; 2]) -> PyResult<()> {
     let [n1, n2] = map.cells().map(|n| n as f64);
     let is_square = |a: f64, b: f64| (a / n1 / (b / n2) - 1.0).abs() < SQUARE;
     if is_square(l1, l2) || !is_square(l2, l1) {
-        return Ok(map);
+        return Ok(());
     }
     Err(PyValueError::new_err(format!(
         "lengths = ({l1}, {l2}) are those of the other axes: the map has {n1} points along x1 and {n2} along x2; give lengths=({l2}, {l1}), or \

@@ -233,6 +233,13 @@ fn of_units(units: Option<&Bound<'_, PyAny>>) -> PyResult<Units> {
 ///     A known law of the same reference, without `vertical_shifts`; else the shifts are found from the data.
 /// vertical_shifts : bool
 ///     Whether the values may be shifted too.
+///
+/// >>> import numpy as np
+/// >>> t = np.geomspace(1e-1, 1e1, 9)
+/// >>> creep = lambda shift: Measurements.creep(t, 1e-6 * (1 + (t / shift) ** 0.3))
+/// >>> curve = MasterCurve(300.0, [(300.0, creep(1.0)), (310.0, creep(0.1))])
+/// >>> [round(shift, 2) for temperature, shift, error in curve.shift_factors]
+/// [1.0, 0.1]
 #[pyclass(frozen, module = "viscocontact")]
 pub struct MasterCurve(rh::MasterCurve);
 

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use pyo3::exceptions::PyTypeError;
 use pyo3::gc::PyVisit;
@@ -21,7 +22,7 @@ use crate::interrupt::free;
 use crate::recipe::{Recipe, digits};
 use crate::reports::StepReport;
 use crate::states_contact::StatesContact;
-use crate::used::{Function, Shared, Taken, Traversed, goes_on};
+use crate::used::{Function, Shared, Taken, Traversed, goes_on, in_use};
 
 /// The contact that a run leads.
 #[derive(IntoPyObjectRef)]
@@ -45,12 +46,20 @@ impl From<Py<StatesContact>> for Of {
 /// A contact on its way along a load: an iterator over the reports of its steps, made by `follow`.
 ///
 /// The contact shows its state after each step. A step or another run of the contact ends the run.
+///
+/// >>> contact = ViscoelasticContact(Grid(32, 4e-3), Shape.sphere(10e-3), Material(Rheology.maxwell(1e6, 1.0)))
+/// >>> run = contact.follow(Load.force(0.5), 1.0, dt=0.25)
+/// >>> [report.time for report in run]
+/// [0.0, 0.25, 0.5, 0.75, 1.0]
+/// >>> run.progress["share_of_time"]
+/// 1.0
 #[pyclass(frozen, weakref, module = "viscocontact")]
 pub struct Run {
     of: Of,
     number: u64,
     sampled: bool,
     progress: Option<Function>,
+    is_told: AtomicBool,
 }
 
 /// Evaluates an expression with either contact of a run.
@@ -81,17 +90,23 @@ macro_rules! on_run {
 
 impl Run {
     pub fn of(of: Of, number: u64, sampled: bool, progress: Option<Function>) -> Run {
-        Run { of, number, sampled, progress }
+        Run { of, number, sampled, progress, is_told: AtomicBool::new(false) }
     }
 
     /// Signals are looked for in each step: `list(run)` runs no Python between them.
     fn next(&self, py: Python<'_>) -> PyResult<Option<Report>> {
         py.check_signals()?;
+        if self.is_told.load(Ordering::Relaxed) {
+            return Err(in_use::<Run>());
+        }
         let report =
             with_contact!(self, py, Taken, contact => { let mut contact = contact; contact.next(py, self.number)? });
         if let (Some(progress), Some(_)) = (&self.progress, &report) {
             let share = on_run!(self, py, run => run.progress().share_of_time());
-            if !goes_on(Some(progress), (share,))? {
+            self.is_told.store(true, Ordering::Relaxed);
+            let goes_on = goes_on(Some(progress), (share,));
+            self.is_told.store(false, Ordering::Relaxed);
+            if !goes_on? {
                 return Err(Cancelled::new_err("the run was cancelled by its report of progress"));
             }
         }
@@ -224,7 +239,7 @@ impl Run {
         &self.of
     }
 
-    /// Steps taken, time [s], end [s], share of the time and share of the decades of time that are over.
+    /// A dict of the "steps" taken, "time" [s], its end "until" [s], "share_of_time" and "share_of_decades" that are over.
     #[getter]
     fn progress<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let at = on_run!(self, py, run => run.progress());
@@ -308,6 +323,11 @@ pub fn asked_for<C: Led, T>(run: &vr::Run<'static, C>, of: impl Fn(&vr::Sample<'
 }
 
 /// A state of a run at a time of `sample_at`.
+///
+/// >>> contact = ViscoelasticContact(Grid(32, 4e-3), Shape.sphere(10e-3), Material(Rheology.maxwell(1e6, 1.0)))
+/// >>> run = contact.follow(Load.force(0.5), 1.0, sample_at=[0.5])
+/// >>> [sample.report.time for report in run for sample in run.samples()]
+/// [0.5]
 #[pyclass(frozen, module = "viscocontact")]
 pub struct Sample {
     report: Report,

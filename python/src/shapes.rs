@@ -160,6 +160,11 @@ impl Shape {
         Shape::made(slf.py(), "__add__", (slf, other), Arc::new(sum))
     }
 
+    /// Arrays leave `+` to shapes, which refuse it: an array has no grid.
+    #[classattr]
+    #[pyo3(name = "__array_ufunc__")]
+    const ARRAY_UFUNC: Option<bool> = None;
+
     /// `sum` of shapes begins with 0.
     fn __radd__<'py>(slf: Bound<'py, Self>, other: &Bound<'py, PyAny>) -> PyResult<Bound<'py, Shape>> {
         let needed = "a Shape is added to a Shape: Shape.gap_on(grid, array) makes one of an array";

@@ -14,7 +14,7 @@ use crate::held::Held;
 use crate::interrupt::free;
 use crate::loads::Load;
 use crate::materials::Material;
-use crate::recipe::Recipe;
+use crate::recipe::{Recipe, digits};
 use crate::reports::StepReport;
 use crate::states::ElasticStates;
 use crate::temperature::TemperatureHistory;
@@ -148,8 +148,8 @@ impl StatesContact {
 
     fn __repr__(slf: Shared<'_, Self>) -> PyResult<String> {
         let of = slf.get()?;
-        let (time, force, approach) = (of.time(), of.force(), of.approach());
-        Ok(format!("StatesContact(time={time} s, force={force:e} N, approach={approach:e} m)"))
+        let [time, force, approach] = [of.time(), of.force(), of.approach()].map(digits);
+        Ok(format!("StatesContact(time={time} s, force={force} N, approach={approach} m)"))
     }
 }
 

@@ -15,6 +15,7 @@ use crate::fields::{Showing, Shown};
 use crate::grid::Grid;
 use crate::interrupt::free;
 use crate::kernels::{InfluenceKernel, axis};
+use crate::recipe::digits;
 use crate::reports::StepReport;
 use crate::used::{Shared, Taken};
 use crate::writers::{FORMATS, metadata};
@@ -77,6 +78,11 @@ impl SubsurfaceStress {
     ) -> PyResult<SubsurfaceStress> {
         let pressure = field("pressure", pressure, kernel.kernel.grid().cells())?;
         free(py, || ob::SubsurfaceStress::new(&kernel.kernel, &pressure, nu)).or_raise().map(SubsurfaceStress)
+    }
+
+    fn __repr__(&self) -> String {
+        let [n1, n2] = self.0.grid().cells();
+        format!("SubsurfaceStress({n1} × {n2} cells, least_depth={} m)", digits(self.0.least_depth()))
     }
 
     /// The components below each cell at a `depth` [m]: an array of shape (n1, n2, 6).
@@ -230,6 +236,16 @@ impl EnergyBalance {
     #[new]
     fn new(contact: Shared<'_, ViscoelasticContact>) -> PyResult<EnergyBalance> {
         ct::EnergyBalance::new(contact.get()?).or_raise().map(EnergyBalance)
+    }
+
+    fn __repr__(slf: Shared<'_, Self>) -> String {
+        let of = slf.0.energies();
+        format!(
+            "EnergyBalance(work={} J, stored={} J, viscous={} J)",
+            digits(of.work),
+            digits(of.stored),
+            digits(of.viscous)
+        )
     }
 
     /// Takes in the last step, of which this is the report, and returns `energies`.

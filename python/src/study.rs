@@ -16,7 +16,7 @@ use viscocontact::{Axis, Error, ViscoelasticContact as Contact};
 use crate::contact::ViscoelasticContact;
 use crate::errors::{OrRaise, raised_number};
 use crate::fields::Fields;
-use crate::grid::{Count, Grid};
+use crate::grid::{Grid, count};
 use crate::interrupt::{Listener, free};
 use crate::kernels::InfluenceKernel;
 use crate::loads::history;
@@ -83,7 +83,7 @@ pub struct Study {
 #[pymethods]
 impl Study {
     #[new]
-    #[pyo3(signature = (shape, material, load, until, *, accuracy=1e-3, ask=Vec::new(), quantities=None, fields=Vec::new(), kernel=None, domain=None, periods=(None, None), line=None, temperature=None, cells=Count(262_144), work=None, progress=None))]
+    #[pyo3(signature = (shape, material, load, until, *, accuracy=1e-3, ask=Vec::new(), quantities=None, fields=Vec::new(), kernel=None, domain=None, periods=(None, None), line=None, temperature=None, cells=262_144, work=None, progress=None))]
     #[allow(clippy::too_many_arguments)]
     fn new(
         py: Python<'_>,
@@ -100,7 +100,7 @@ impl Study {
         periods: (Option<f64>, Option<f64>),
         line: Option<f64>,
         temperature: Option<Py<TemperatureHistory>>,
-        cells: Count,
+        #[pyo3(from_py_with = count)] cells: usize,
         work: Option<f64>,
         progress: Option<Function>,
     ) -> PyResult<Study> {
@@ -122,8 +122,7 @@ impl Study {
                 let builder = kernel.into_iter().fold(builder, |builder, kernel| builder.kernel(kernel));
                 Ok(temperature_of.into_iter().fold(builder, |builder, history| builder.temperature(history.clone())))
             };
-            let mut study =
-                vs::Study::new(scene, &*history, until).accuracy(accuracy).cells(cells.0).fields_at(&fields);
+            let mut study = vs::Study::new(scene, &*history, until).accuracy(accuracy).cells(cells).fields_at(&fields);
             study = asked.into_iter().fold(study, vs::Study::ask);
             for (name, of) in &own {
                 study = study.ask_own(name, |fields| value_of(of, fields));

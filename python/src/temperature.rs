@@ -112,6 +112,11 @@ made_by_calls!(TimeTemperature);
 /// law : TimeTemperature
 /// temperature : float, rows of (time [s], temperature [K]), or a function of time
 /// corners : times at which a function of time has corners [s]
+///
+/// >>> law = TimeTemperature.arrhenius(80e3, 300.0)
+/// >>> warming = TemperatureHistory(law, [(0.0, 300.0), (10.0, 320.0)])
+/// >>> warming.at(5.0), warming.reduced_time(0.0, 10.0) > 10.0      # it creeps faster when warm
+/// (310.0, True)
 #[pyclass(frozen, module = "viscocontact")]
 pub struct TemperatureHistory {
     pub history: rh::TemperatureHistory,

@@ -21,7 +21,7 @@ pub type Taken<'py, T> = Used<PyRefMut<'py, T>>;
 /// An object that no other call uses meanwhile.
 pub struct Used<G>(G);
 
-fn in_use<T: PyClass>() -> PyErr {
+pub fn in_use<T: PyClass>() -> PyErr {
     let name = T::NAME;
     PyRuntimeError::new_err(format!(
         "this {name} is computing, in another thread or in the call that called this function: look at it when the call has returned, at a \

@@ -53,8 +53,22 @@ macro_rules! with_either {
 ///     Additional columns, with their units in brackets.
 /// earlier : "refuse" (default: FileExistsError), "replace", or "continue"
 ///     "continue" goes on after the state of the contact, as after `resume`: what the file has of later times is removed.
+///
+/// `to_dataframe()` reads it back; elsewhere `pandas.read_csv(path, comment="#")`.
+///
+/// >>> import pathlib, tempfile
+/// >>> path = pathlib.Path(tempfile.mkdtemp(), "history.csv")
+/// >>> contact = ViscoelasticContact(Grid(16, 4e-3), Shape.sphere(10e-3), Material(Rheology.maxwell(1e6, 1.0)))
+/// >>> history = CsvHistory(path, contact)
+/// >>> for report in contact.follow(Load.force(0.5), 0.2, dt=0.1):
+/// ...     history.record(contact, report)
+/// >>> len(path.read_text().splitlines())      # the scene, the names, and a row for each step
+/// 5
 #[pyclass(module = "viscocontact")]
-pub struct CsvHistory(vo::CsvHistory);
+pub struct CsvHistory {
+    history: vo::CsvHistory,
+    path: PathBuf,
+}
 
 #[pymethods]
 impl CsvHistory {
@@ -70,8 +84,15 @@ impl CsvHistory {
     ) -> PyResult<CsvHistory> {
         let (metadata, earlier) = (metadata(title, notes)?, choice("earlier", earlier, &EARLIER)?);
         let columns: Vec<&str> = columns.iter().map(String::as_str).collect();
-        with_either!(contact, contact => vo::CsvHistory::create(path, &metadata, contact, &columns, earlier))
-            .map(CsvHistory)
+        let history =
+            with_either!(contact, contact => vo::CsvHistory::create(&path, &metadata, contact, &columns, earlier))?;
+        Ok(CsvHistory { history, path })
+    }
+
+    /// The path of the file.
+    #[getter]
+    fn path(slf: Shared<'_, Self>) -> PathBuf {
+        slf.path.clone()
     }
 
     /// Appends the row of the last step, with the values of the additional columns.
@@ -82,7 +103,7 @@ impl CsvHistory {
         report: &StepReport,
         columns: Vec<f64>,
     ) -> PyResult<()> {
-        with_either!(contact, contact => slf.0.record(contact, &report.0, &columns))
+        with_either!(contact, contact => slf.history.record(contact, &report.0, &columns))
     }
 }
 
@@ -104,6 +125,12 @@ pub const FIELDS: [(&str, Field); 4] = [
 /// format : "npz" (default; numpy.load) or "vtk" (ParaView, PyVista)
 /// fields : sequence of "pressure", "displacement", "gap", "traction"; by default those of the contact
 /// title, notes, earlier : as of `CsvHistory`
+///
+/// >>> import pathlib, tempfile
+/// >>> contact = ViscoelasticContact(Grid(16, 4e-3), Shape.sphere(10e-3), Material(Rheology.maxwell(1e6, 1.0)))
+/// >>> frames = FrameSeries(pathlib.Path(tempfile.mkdtemp(), "frames"), contact)
+/// >>> frames.record(contact).suffix
+/// '.npz'
 #[pyclass(module = "viscocontact")]
 pub struct FrameSeries(vo::FrameSeries);
 

@@ -1,8 +1,10 @@
 """Results in pandas, xarray and matplotlib, and maps of SurfaceTopography: each is imported where it is asked for."""
 
+import importlib
+
 import numpy as np
 
-from viscocontact import _native as native
+native = importlib.import_module("viscocontact._native")
 
 UNITS = {
     "time": "s", "dt": "s", "force": "N", "approach": "m", "contact_area": "m²", "pressure": "Pa", "gap": "m", "displacement": "m",
