@@ -294,6 +294,8 @@ pub fn watched<T: Send>(
     let kept_of = kept.clone();
     let watch = move || {
         let is_on = !flag.load(Ordering::Relaxed) && kept_of.number(goes_on(progress.as_ref(), ()), false);
+        // once it has ended, it does not go on
+        flag.store(!is_on, Ordering::Relaxed);
         if is_on { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     };
     let mut failed = None;

@@ -51,6 +51,16 @@ impl ElasticStates {
     }
 }
 
+impl ElasticStates {
+    /// The call that makes these states again.
+    fn made(&self, py: Python<'_>) -> PyResult<Recipe> {
+        match &self.recipe {
+            Some(recipe) => Ok(recipe.again(py)),
+            None => Recipe::new(py, "_of_bytes", (PyBytes::new(py, &free(py, || states_to_bytes(&self.states))),)),
+        }
+    }
+}
+
 makers! {ElasticStates, py:
     /// A sphere of `radius` [m] (Hertz).
     sphere(radius: f64) = st::ElasticStates::sphere(radius);
@@ -280,13 +290,16 @@ impl ElasticStates {
 
     /// A sweep becomes its states, without the surface: `StatesContact.fields` is then not possible.
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        let (py, class) = (slf.py(), slf.get_type());
-        if let Some(recipe) = &slf.get().recipe {
-            return recipe.reduce(class);
-        }
-        let states = &slf.get().states;
-        let bytes = free(py, || states_to_bytes(states));
-        Recipe::new(py, "_of_bytes", (PyBytes::new(py, &bytes),))?.reduce(class)
+        slf.get().made(slf.py())?.reduce(slf.get_type())
+    }
+
+    fn __eq__(slf: &Bound<'_, Self>, other: &Bound<'_, ElasticStates>) -> PyResult<bool> {
+        let key = slf.get().made(slf.py())?.key(slf.get_type())?;
+        key.eq(other.get().made(slf.py())?.key(slf.get_type())?)
+    }
+
+    fn __hash__(&self) -> usize {
+        self.states.states().len()
     }
 
     fn __traverse__(&self, visit: PyVisit<'_>) -> Traversed {

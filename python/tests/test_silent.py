@@ -235,12 +235,12 @@ def test_cycles_through_functions_are_collected(name):
 
 def test_a_function_lives_as_long_as_what_calls_it():
     model = Model()
-    contact = vc.ViscoelasticContact(GRID, BALL, vc.Material(vc.Rheology.function(model.of_time)), times=(1e-3, 10.0))
+    contact = vc.ViscoelasticContact(vc.Grid(16, 4e-3), BALL, vc.Material(vc.Rheology.function(model.of_time)), times=(1e-3, 10.0))
     run = contact.follow(model.load, until=1.0)
     states = vc.StatesContact(TIP, vc.Material(vc.Rheology.function(model.of_time)).fitted(1e-3, 10.0))
     del model, contact
     gc.collect()
-    assert len(list(run)) > 3 and states.step(0.1, F(1e-9)).force == 1e-9
+    assert len(list(run)) > 3 and states.step(0.1, F(1e-9)).approach > 0
 
 
 def interrupted(job, after=0.2):
@@ -304,7 +304,7 @@ PICKLED = {
     "recording": vc.Recording([0.0, 1.0], force=[0.0, 1.0]), "report": ball().step(0.1, F(0.1)), "body": ball().bodies[0],
     "times": vc.Times.every(0.1) + [0.5], "jkr": vc.Jkr(*JKR), "growing": GROWING, "edge": vc.OpeningEdge(RUBBER, 0.05, 1e-7),
     "sliding report": vc.SteadySliding(GRID, FLAT, RUBBER, kernel=vc.InfluenceKernel.periodic(GRID)).at(1.0, F(1e-4)),
-    "load": F(1.0, at=(1e-3, None)), "map": vc.HeightMap(np.eye(4), 1.0), "shape": BALL + FLAT, "grid": GRID, "measurements": vc.Measurements.creep([1.0, 2.0], [1.0, 2.0]),
+    "load": F(1.0, at=(1e-3, None)), "map": vc.HeightMap(np.eye(4), 1.0), "shape": BALL + FLAT, "grid": GRID, "measurements": vc.Measurements.creep([1.0, 2.0, 3.0, 4.0], [1.0, 2.0, 2.5, 2.8]),
     "iterators": vc.Material(vc.Rheology.prony(1e6, zip([5e6], [1.0])), 0.3), "generator": vc.Rheology.prony(1e6, ((g, 1.0) for g in (1e6,))),
 }
 

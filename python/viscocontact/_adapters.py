@@ -124,7 +124,9 @@ def history_to_dataframe(self):
     """The rows written so far as a `pandas.DataFrame`, the same numbers bit by bit."""
     import pandas
 
-    return pandas.read_csv(self.path, comment="#", float_precision="round_trip")
+    # later ones read every digit by default
+    exact = {"float_precision": "round_trip"} if int(pandas.__version__.split(".")[0]) < 3 else {}
+    return pandas.read_csv(self.path, comment="#", **exact)
 
 
 def attach():
