@@ -5,22 +5,21 @@ mod intervals;
 mod report;
 mod reweigh;
 mod search;
+mod state;
 mod variants;
 
 use std::ops::ControlFlow;
 use std::sync::atomic::Ordering;
 
 use faer::{Col, Mat};
-use viscocontact::numeric::LeastSquares;
 use viscocontact::rheology::Material;
 
 use crate::bounds::Bounds;
-use crate::error::{Error, Result, same_length, within};
+use crate::error::{Error, Result, within};
 use crate::experiment::{Curve, Experiment};
 use crate::forward::Sample;
 use crate::identification::Identification;
 use crate::model::{Model, Scale};
-use crate::noise::Whitening;
 use crate::parameters::Parameter;
 use crate::problem::{Part, Problem, WIDTH};
 use crate::series::Prony;
@@ -28,6 +27,7 @@ use crate::statistics::{correlation_test, student};
 use deviations::{inverse, limit, robust_deviation, sandwich};
 pub use report::{FitWarning, ranked};
 use search::Found;
+pub use state::FitState;
 pub use variants::Variant;
 
 /// A parameter that moves by less than this fraction with a coordinate hardly depends on it.
@@ -84,67 +84,6 @@ pub struct Fit {
     iterations: usize,
     /// The least sum of squares of a model that this one contains.
     contained: Option<(Model, f64)>,
-}
-
-/// The numbers of a fit, without its curves: to save it, or to send it to another process.
-///
-/// ```
-/// use viscocontact::states::ElasticStates;
-/// use viscocontact_identify::{Curve, Experiment, Identification, Model, Protocol};
-///
-/// let experiment = Experiment::new(Protocol::trapezoid(1.0e-6, [0.2, 0.5, 0.2], 0.05)?, ElasticStates::sphere(5.0e-6)?);
-/// let maxwell = Identification::new(Model::Maxwell);
-/// let samples = maxwell.respond(&experiment, &[("E0", 2.0e3), ("tau", 0.5)])?;
-/// let curves = [Curve::new(experiment, samples.iter().map(|sample| sample.force).collect())?];
-/// let fit = maxwell.fit(&curves)?;
-/// let again = fit.state().fit(&maxwell, &curves)?;
-/// assert_eq!(again.estimates(), fit.estimates());
-/// # Ok::<(), viscocontact_identify::Error>(())
-/// ```
-#[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct FitState {
-    /// The free parameters on their scales.
-    pub coordinates: Vec<f64>,
-    /// Of each curve: its weight, the autoregressive coefficient, and a weight of each sample.
-    pub noise: Vec<(f64, Option<f64>, Vec<f64>)>,
-    /// Iterations of the search.
-    pub iterations: usize,
-    /// The least sum of squares of a model that this one contains.
-    pub contained: Option<f64>,
-}
-
-impl FitState {
-    /// No fit yet.
-    pub fn new(
-        coordinates: Vec<f64>,
-        noise: Vec<(f64, Option<f64>, Vec<f64>)>,
-        iterations: usize,
-        contained: Option<f64>,
-    ) -> FitState {
-        FitState { coordinates, noise, iterations, contained }
-    }
-
-    /// The fit of these numbers to the curves that they are of.
-    ///
-    /// # Errors
-    /// If there are other numbers of curves, samples or parameters; as [`Identification::fit`].
-    pub fn fit(self, identification: &Identification, curves: &[Curve]) -> Result<Fit> {
-        let mut problem = identification.problem(curves.to_vec())?;
-        same_length("state of a fit", self.coordinates.len(), problem.free().count())?;
-        same_length("noise of the curves of a fit", self.noise.len(), curves.len())?;
-        for (part, (scale, correlation, outliers)) in problem.parts.iter_mut().zip(self.noise) {
-            same_length("weights of the samples of a fit", outliers.len(), part.len())?;
-            (part.scale, part.outliers) = (scale, outliers);
-            if let Some(phi) = correlation {
-                part.whitening = Whitening::Autoregressive(phi);
-            }
-        }
-        let residuals = problem.residuals(&self.coordinates)?;
-        let minimum = LeastSquares::at(self.coordinates, residuals, self.iterations);
-        let contained = problem.model.contained().zip(self.contained);
-        Fit::new(identification, problem, Found { minimum, contained })
-    }
 }
 
 impl Fit {
@@ -234,17 +173,6 @@ impl Fit {
             iterations,
             contained,
         })
-    }
-
-    /// What tells this fit from others of the same curves, to make it again without a search ([`FitState::fit`]).
-    pub fn state(&self) -> FitState {
-        let noise = |part: &Part| (part.scale, part.whitening.correlation(), part.outliers.clone());
-        FitState {
-            coordinates: self.coordinates.clone(),
-            noise: self.problem.parts.iter().map(noise).collect(),
-            iterations: self.iterations,
-            contained: self.contained.map(|(_, sum)| sum),
-        }
     }
 
     /// The same with a watch over what it computes from now on ([`Identification::watched`]).
