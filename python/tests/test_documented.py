@@ -68,7 +68,7 @@ def test_the_version_is_that_of_the_crate(repository):
 
 
 def test_the_licence_is_that_of_the_crate(repository):
-    assert (repository / "python" / "LICENSE").read_text() == (repository / "LICENSE").read_text()
+    assert (repository / "python/licences/viscocontact.txt").read_text() == (repository / "LICENSE").read_text()
 
 
 @pytest.mark.parametrize("page, fence", [("README.md", "python"), ("../docs/guide/results.md", "py")])
