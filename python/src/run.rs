@@ -1,13 +1,7 @@
 //! Runs along a load history.
 
-use std::path::PathBuf;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use pyo3::exceptions::PyTypeError;
-use pyo3::gc::PyVisit;
-use pyo3::prelude::*;
-use pyo3::types::PyDict;
 use viscocontact as vc;
 use viscocontact::contact::StepReport as Report;
 use viscocontact::fields::KeptFields;
@@ -15,14 +9,12 @@ use viscocontact::run::{self as vr, Crossing};
 
 use crate::arrays;
 use crate::contact::ViscoelasticContact;
-use crate::errors::{Cancelled, OrRaise, choice, raised_number};
+use crate::errors::Cancelled;
 use crate::fields::Fields;
 use crate::held::Led;
-use crate::interrupt::free;
-use crate::recipe::{Recipe, digits};
+use crate::prelude::*;
 use crate::reports::StepReport;
 use crate::states_contact::StatesContact;
-use crate::used::{Function, Shared, Taken, Traversed, goes_on, in_use};
 
 /// The contact that a run leads.
 #[derive(IntoPyObjectRef)]
