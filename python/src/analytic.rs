@@ -4,9 +4,7 @@ use viscocontact::analytic as an;
 use viscocontact::load::LoadHistory as Load;
 
 use crate::arrays::check;
-use crate::loads::LoadHistory;
 use crate::prelude::*;
-use crate::shapes::Shape;
 use crate::sliding::complex;
 
 /// Hertz: a sphere of `radius` [m] on a body of contact `modulus` E* [Pa] under `force` [N]: "contact_radius" [m], "max_pressure" [Pa]

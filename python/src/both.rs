@@ -2,12 +2,9 @@
 
 use pyo3::types::PyType;
 
-use crate::contact::ViscoelasticContact;
 use crate::held::{Options, saved_every, stepping, times};
-use crate::loads::LoadHistory;
 use crate::prelude::*;
 use crate::run::Run;
-use crate::states_contact::StatesContact;
 
 /// How an object is made again, and the bytes of its state.
 type Pickled<'py> =

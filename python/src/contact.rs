@@ -1,17 +1,12 @@
 //! The contact, and its steps.
 
-use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 use viscocontact::contact as ct;
 use viscocontact::{self as vc, motion};
 
 use crate::held::Held;
-use crate::loads::{Load, loads};
 use crate::prelude::*;
-use crate::reports::StepReport;
-use crate::scene::builder;
-use crate::shapes::{Shape, geometries};
 
 /// Steps on more cells, ...
 const MANY_CELLS: usize = 1 << 17;

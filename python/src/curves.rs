@@ -3,10 +3,8 @@
 use viscocontact::load::LoadHistory as _;
 use viscocontact_identify as id;
 
-use crate::loads::{Load, LoadHistory};
 use crate::measured::text_table;
 use crate::prelude::*;
-use crate::states::ElasticStates;
 
 /// A drive and the tip that it presses onto the sample, before the force is measured.
 ///

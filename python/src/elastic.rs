@@ -1,17 +1,10 @@
 //! Elastic contacts.
 
-use std::sync::atomic::AtomicBool;
-
 use viscocontact::contact::Settings;
 use viscocontact::elastic as ve;
 
 use crate::arrays::field;
-use crate::fields::{Fields, Shown};
-use crate::kernels::InfluenceKernel;
-use crate::loads::loads;
 use crate::prelude::*;
-use crate::scene::settings;
-use crate::shapes::geometries;
 
 /// A rigid body, or several, pressed onto an elastic body: without time.
 ///

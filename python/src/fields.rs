@@ -3,9 +3,6 @@
 use viscocontact as vc;
 use viscocontact::fields as vf;
 
-use crate::contact::ViscoelasticContact;
-use crate::elastic::ElasticContact;
-use crate::loads::Load;
 use crate::prelude::*;
 use crate::reports::BodyState;
 use crate::sliding::SteadySliding;

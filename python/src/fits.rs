@@ -7,9 +7,6 @@ use crate::curves::Curve;
 use crate::identify::{Identification, several, watched};
 use crate::pictures::Picture;
 use crate::prelude::*;
-use crate::rheology::Rheology;
-use crate::scene::builder;
-use crate::states::ElasticStates;
 
 /// One identified parameter.
 ///

@@ -1,6 +1,6 @@
 //! A contact, or the run that owns it; what a run is asked for.
 
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::AtomicU64;
 use std::time::Duration;
 
 use crate::prelude::*;

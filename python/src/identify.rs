@@ -1,15 +1,13 @@
 //! Moduli from measured indentation curves, with their uncertainty.
 
 use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::AtomicUsize;
 
 use viscocontact_identify as id;
 
 use crate::curves::{Curve, Experiment, model};
 use crate::fits::Fit;
 use crate::prelude::*;
-use crate::scene::unexpected;
-use crate::states::ElasticStates;
 
 /// What is known of a property of each curve: one for all, or a list with one for each.
 fn per_curve(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Option<id::PerCurve>> {

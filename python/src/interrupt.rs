@@ -1,7 +1,6 @@
 //! Ctrl-C while Rust computes, and computing in a process that was forked.
 
 use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Mutex, PoisonError};
 use std::thread;

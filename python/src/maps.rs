@@ -9,7 +9,6 @@ use viscocontact::{FileError, TextFormat};
 use crate::arrays::{plane, table};
 use crate::errors::raise;
 use crate::prelude::*;
-use crate::shapes::Shape;
 
 /// Heights of a surface on a regular grid of points, measured or computed; a `Shape`.
 ///

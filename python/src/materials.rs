@@ -3,7 +3,7 @@
 use viscocontact::rheology as rh;
 
 use crate::prelude::*;
-use crate::rheology::{Rheology, Series, series};
+use crate::rheology::{Series, series};
 
 /// A rheology that was measured in tension: what it gives as J(t) is the strain of a rod under unit tension, and its moduli are Young's.
 ///

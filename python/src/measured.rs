@@ -9,9 +9,6 @@ use viscocontact::rheology::{self as rh, Experiment, Units};
 
 use crate::materials::Tension;
 use crate::prelude::*;
-use crate::rheology::Rheology;
-use crate::scene::unexpected;
-use crate::temperature::TimeTemperature;
 
 /// Temperatures that differ by less, relative, are the same.
 const SAME_TEMPERATURE: f64 = 1e-9;

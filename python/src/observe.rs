@@ -4,12 +4,7 @@ use numpy::PyArrayMethods;
 use viscocontact::observe as ob;
 
 use crate::arrays::{columns, field};
-use crate::contact::ViscoelasticContact;
-use crate::elastic::ElasticContact;
-use crate::fields::{Fields, Shown};
-use crate::kernels::axis;
 use crate::prelude::*;
-use crate::shapes::Shape;
 use crate::stress::SubsurfaceStress;
 
 /// What a class that has fields shows.

@@ -4,10 +4,7 @@ use numpy::PyArrayMethods;
 use viscocontact::plot::{self as vp, Chart, Map, Quantity};
 
 use crate::arrays::cell_values;
-use crate::contact::ViscoelasticContact;
-use crate::elastic::ElasticContact;
-use crate::fields::{Fields, Showing, Shown};
-use crate::kernels::axis;
+use crate::fields::Showing;
 use crate::prelude::*;
 use crate::stress::QUANTITIES;
 use crate::writers::FIELDS;

@@ -1,20 +1,14 @@
 //! Runs along a load history.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
 use viscocontact as vc;
 use viscocontact::contact::StepReport as Report;
 use viscocontact::fields::KeptFields;
 use viscocontact::run::{self as vr, Crossing};
 
 use crate::arrays;
-use crate::contact::ViscoelasticContact;
 use crate::errors::Cancelled;
-use crate::fields::Fields;
 use crate::held::Led;
 use crate::prelude::*;
-use crate::reports::StepReport;
-use crate::states_contact::StatesContact;
 
 /// The contact that a run leads.
 #[derive(IntoPyObjectRef)]

@@ -4,11 +4,7 @@ use viscocontact::contact::{Builder, Edge, Frame, Settings, TimeRule};
 use viscocontact::{self as vc, ViscoelasticContact};
 
 use crate::attraction::Attraction;
-use crate::kernels::InfluenceKernel;
-use crate::loads::history;
 use crate::prelude::*;
-use crate::shapes::geometries;
-use crate::temperature::TemperatureHistory;
 
 /// Changes a setting if it is one of the keyword `name`.
 fn setting(settings: Settings, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Option<Settings>> {

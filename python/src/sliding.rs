@@ -1,19 +1,13 @@
 //! Steady sliding and rolling: one problem a velocity.
 
-use std::sync::atomic::AtomicBool;
-
 use numpy::Complex64;
 use viscocontact::fields as vf;
 use viscocontact::sliding as sl;
 
 use crate::arrays::{number, vectors};
-use crate::fields::{Fields, Shown};
-use crate::loads::{Load, loads};
 use crate::pictures::{Picture, quantity};
 use crate::prelude::*;
 use crate::reports::figures;
-use crate::scene::builder;
-use crate::temperature::TimeTemperature;
 
 /// The complex number that a function in Python gives at a frequency.
 pub fn complex(function: &Function, omega: f64, kept: &Kept) -> Complex64 {

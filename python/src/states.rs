@@ -8,13 +8,9 @@ use viscocontact::{self as vc};
 
 use crate::arrays::table;
 use crate::held::Led;
-use crate::kernels::InfluenceKernel;
-use crate::loads::{Tilts, history, tilts};
+use crate::loads::{Tilts, tilts};
 use crate::prelude::*;
 use crate::run::asked_for;
-use crate::scene::settings;
-use crate::shapes::geometries;
-use crate::temperature::TemperatureHistory;
 
 /// The elastic states of a surface, found once: any material, history and temperature on it is then a matter of microseconds a step.
 ///

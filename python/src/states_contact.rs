@@ -1,17 +1,10 @@
 //! A contact of one material on elastic states.
 
-use std::sync::atomic::AtomicBool;
-
 use viscocontact::contact as ct;
 use viscocontact::states as st;
 
-use crate::fields::Fields;
 use crate::held::Held;
-use crate::loads::Load;
 use crate::prelude::*;
-use crate::reports::StepReport;
-use crate::states::ElasticStates;
-use crate::temperature::TemperatureHistory;
 
 /// A contact of one material on elastic states, advanced like a `ViscoelasticContact`.
 ///

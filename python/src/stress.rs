@@ -5,11 +5,8 @@ use viscocontact::observe::{self as ob, Stress};
 use viscocontact::output::{Format, write_stress};
 
 use crate::arrays::{field, table};
-use crate::contact::ViscoelasticContact;
-use crate::fields::{Showing, Shown};
-use crate::kernels::{InfluenceKernel, axis};
+use crate::fields::Showing;
 use crate::prelude::*;
-use crate::reports::StepReport;
 use crate::writers::{FORMATS, metadata};
 
 /// The stress below the surface [Pa]: tension positive, x3 the depth. Components are in the order 11, 22, 33, 12, 13, 23.

@@ -7,13 +7,7 @@ use viscocontact::run::Stepping;
 use viscocontact::study::{self as vs, Accuracy, Cost, Observable, StudyResult};
 use viscocontact::{Axis, Error, ViscoelasticContact as Contact};
 
-use crate::contact::ViscoelasticContact;
-use crate::fields::Fields;
-use crate::kernels::InfluenceKernel;
-use crate::loads::history;
 use crate::prelude::*;
-use crate::shapes::Shape;
-use crate::temperature::TemperatureHistory;
 
 const QUANTITIES: [(&str, Observable); 4] = [
     ("approach", Observable::Approach),

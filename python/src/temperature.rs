@@ -4,7 +4,6 @@ use viscocontact::rheology as rh;
 
 use crate::arrays::{number, pairs};
 use crate::prelude::*;
-use crate::rheology::Rheology;
 
 /// How temperature shifts the time scale: a_T, by which all times of a material are multiplied at a temperature T [K]; and b_T, by which its
 /// moduli are, if the law has vertical factors.

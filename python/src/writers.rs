@@ -2,11 +2,8 @@
 
 use viscocontact::output::{self as vo, Earlier, Field, Format, Metadata};
 
-use crate::contact::ViscoelasticContact;
-use crate::fields::{Showing, Shown};
+use crate::fields::Showing;
 use crate::prelude::*;
-use crate::reports::StepReport;
-use crate::states_contact::StatesContact;
 
 pub fn metadata(title: &str, notes: Option<&Bound<'_, PyDict>>) -> PyResult<Metadata> {
     notes.into_iter().flatten().try_fold(Metadata::new(title), |metadata, (key, value)| {
