@@ -27,6 +27,7 @@ impl Estimate {
         format!("Estimate({})", self.of)
     }
 
+    #[allow(clippy::type_complexity)]
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (Py<Fit>, &str))> {
         Ok((py.get_type::<Fit>().getattr("__getitem__")?, (self.fit.clone_ref(py), &self.of.name)))
     }
