@@ -16,16 +16,18 @@ use crate::prelude::*;
 /// Time between two looks for a signal.
 const LISTEN: Duration = Duration::from_millis(50);
 
-/// The one thread on which a process that was forked computes: the threads of its parent are not in it, and who waited for them would hang.
+/// Whether this process was forked: the threads of its parent are not in it, and who waited for them would hang.
+static FORKED: AtomicBool = AtomicBool::new(false);
+/// The one thread on which it computes then, from its first computation on.
 static OF_CHILD: Mutex<Option<Arc<ThreadPool>>> = Mutex::new(None);
 
 /// Called in a process that was forked, for it and for its children.
 #[pyfunction]
 #[pyo3(name = "_forked")]
 pub fn forked() {
-    let pool = ThreadPoolBuilder::new().num_threads(1).build().ok().map(Arc::new);
-    // the threads of a pool before are not in this process, either: it has no end here
-    std::mem::forget(std::mem::replace(&mut *OF_CHILD.lock().unwrap_or_else(PoisonError::into_inner), pool));
+    FORKED.store(true, Ordering::Relaxed);
+    // the thread of a parent that was forked is not in this process, either: it has no end here
+    std::mem::forget(OF_CHILD.lock().unwrap_or_else(PoisonError::into_inner).take());
 }
 
 /// Computes without the GIL.
@@ -34,8 +36,15 @@ pub fn free<T: Send>(py: Python<'_>, job: impl FnOnce() -> T + Send) -> T {
 }
 
 fn on_own_threads<T: Send>(job: impl FnOnce() -> T + Send) -> T {
-    let pool = OF_CHILD.lock().unwrap_or_else(PoisonError::into_inner).clone();
-    let Some(pool) = pool else { return job() };
+    if !FORKED.load(Ordering::Relaxed) {
+        return job();
+    }
+    let mut own = OF_CHILD.lock().unwrap_or_else(PoisonError::into_inner);
+    if own.is_none() {
+        *own = ThreadPoolBuilder::new().num_threads(1).build().ok().map(Arc::new);
+    }
+    let Some(pool) = own.clone() else { return job() };
+    drop(own);
     let (value, raised) = pool.install(|| (job(), no_exception()));
     raised_number(raised, ());
     value
