@@ -1,15 +1,18 @@
 //! What is to be identified, and from what.
 
+use std::ops::ControlFlow;
+
 use viscocontact::numeric::{LeastSquares, least_squares};
 
 use crate::bounds::{Bounds, inverse_gram};
-use crate::error::{Error, Result, positive, unknown};
+use crate::error::{Error, Result, positive, unknown, within};
 use crate::experiment::{Curve, Experiment};
 use crate::forward::Sample;
 use crate::model::Model;
 use crate::noise::Noise;
 use crate::parameters::{Chosen, Kind, Nuisance, Parameter, PerCurve, Property};
 use crate::problem::Problem;
+use crate::watch::Watch;
 
 /// Steps after which a search has failed, if the last one reduces the sum of squares by more than a fraction.
 const MAX_STEPS: usize = 200;
@@ -47,12 +50,14 @@ pub struct Identification {
     pub(crate) noise: Noise,
     sigma: Option<f64>,
     pub(crate) robust: bool,
+    pub(crate) watch: Watch,
 }
 
 impl Identification {
     /// Identifies the parameters of a model; everything else is known until stated otherwise.
     pub fn new(model: Model) -> Identification {
-        Identification { model, chosen: Chosen::default(), noise: Noise::White, sigma: None, robust: false }
+        let (chosen, watch) = (Chosen::default(), Watch::default());
+        Identification { model, chosen, noise: Noise::White, sigma: None, robust: false, watch }
     }
 
     /// A parameter by its name, of the material or of the measurement. A list has one for each curve: of the material, for each curve of
@@ -122,13 +127,33 @@ impl Identification {
         self
     }
 
+    /// Calls `goes_on` during each step of a search, on the thread of the search: where it breaks, the call ends as a cancelled one
+    /// ([`viscocontact::Error::Cancelled`]). For progress bars and interruption, of what a [`Fit`](crate::Fit) computes later, too.
+    pub fn watched(mut self, goes_on: impl Fn() -> ControlFlow<()> + Send + Sync + 'static) -> Identification {
+        self.watch = Watch::new(goes_on);
+        self
+    }
+
+    /// Checks what is chosen before there is a curve: values given, the noise, and the numbers of the model.
+    ///
+    /// # Errors
+    /// As of [`Identification::fit`].
+    pub fn check(&self) -> Result<()> {
+        self.sigma.map(|sigma| positive("standard deviation of the noise", sigma)).transpose()?;
+        if let Noise::AutoregressiveWith(phi) = self.noise {
+            within("autoregressive coefficient", phi, phi.abs() < 1.0, "between -1 and 1")?;
+        }
+        self.model.check_cutoff()?;
+        Parameter::of_material(self.model, &self.chosen).map(drop)
+    }
+
     /// The model.
     pub fn model(&self) -> Model {
         self.model
     }
 
-    /// The same for one of several curves alone.
-    pub(crate) fn of_curve(&self, curve: usize) -> Identification {
+    /// The same for one of several curves alone: what [`Identification::fit_each`] fits to it.
+    pub fn of_curve(&self, curve: usize) -> Identification {
         let mut alone = self.clone();
         alone.chosen.0.iter_mut().for_each(|(_, each)| *each = each.of(curve));
         if let Noise::Covariance(matrices) = &mut alone.noise {
@@ -221,7 +246,7 @@ impl Identification {
             positive("standard deviation of the noise", sigma)?;
         }
         self.noise.suits(curves.len())?;
-        Problem::new(self.model, &self.chosen, curves, &self.noise)
+        Ok(Problem { watch: self.watch.clone(), ..Problem::new(self.model, &self.chosen, curves, &self.noise)? })
     }
 
     /// The problem of experiments that have no data yet.

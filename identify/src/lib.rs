@@ -52,6 +52,7 @@ mod identification;
 mod model;
 mod noise;
 mod parameters;
+mod part;
 #[cfg(feature = "plot")]
 mod plot;
 mod problem;
@@ -65,6 +66,7 @@ mod statistics;
 pub mod tips;
 pub mod usual;
 mod verify;
+mod watch;
 #[cfg(any(doc, doctest))]
 pub mod guide {
     #![doc = include_str!("../docs/guide.md")]
@@ -78,7 +80,7 @@ pub use drainage::{Scaling, TimeAtSize, Verdict};
 pub use dynamic::ComplexModulus;
 pub use error::{Error, Result};
 pub use experiment::{Curve, Experiment};
-pub use fit::{Estimate, Fit, FitWarning, Variant, ranked};
+pub use fit::{Estimate, Fit, FitState, FitWarning, Variant, ranked};
 pub use forward::Sample;
 pub use identification::Identification;
 pub use model::{Law, Model, Scale};

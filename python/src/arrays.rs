@@ -1,43 +1,17 @@
 //! NumPy arrays of any type, order and stride to Rust, and fields back.
 
-use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use crate::prelude::*;
+use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::intern;
-use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList};
 use viscocontact::UserError;
-
-use crate::errors::nothing_raised;
 
 /// Any array of Python.
 pub type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
 
 /// The values of anything that NumPy makes an array of real numbers of, row by row, and its shape.
 pub fn values(name: &str, object: &Bound<'_, PyAny>) -> PyResult<(Vec<f64>, Vec<usize>)> {
-    let py = object.py();
-    let numpy = py.import(intern!(py, "numpy"))?;
-    // NumPy takes an iterator, as of `zip`, for one value
-    let listed = object.hasattr(intern!(py, "__next__"))?.then(|| py.get_type::<PyList>().call1((object,)));
-    let listed = listed.transpose()?;
-    let object = listed.as_ref().unwrap_or(object);
-    // an array without its mask has values where none are
-    let is_masked = object.hasattr(intern!(py, "filled"))?
-        && numpy.getattr(intern!(py, "ma"))?.call_method1(intern!(py, "isMaskedArray"), (object,))?.is_truthy()?;
-    let array = numpy.call_method1(intern!(py, "asarray"), (object,))?;
-    let options = PyDict::new(py);
-    options.set_item("casting", "same_kind")?;
-    options.set_item("copy", false)?;
-    options.set_item("order", "C")?;
-    let array = array.call_method(intern!(py, "astype"), ("float64",), Some(&options)).map_err(|_| {
-        let kind = array.getattr("dtype").map_or_else(|_| "?".to_owned(), |kind| kind.to_string());
-        PyTypeError::new_err(format!("{name}: an array of real numbers is needed, not of {kind}"))
-    })?;
-    let array = if is_masked {
-        let mask = numpy.getattr(intern!(py, "ma"))?.call_method1(intern!(py, "getmaskarray"), (object,))?;
-        numpy.call_method1(intern!(py, "where"), (mask, f64::NAN, array))?
-    } else {
-        array
-    };
+    let array =
+        object.py().import(intern!(object.py(), "viscocontact._values"))?.call_method1("numbers", (name, object))?;
     let array = array.cast::<PyArrayDyn<f64>>()?;
     // another thread may be writing into it
     let readable = array.try_readonly().map_err(|error| PyValueError::new_err(format!("{name}: {error}")))?;
@@ -136,22 +110,43 @@ pub fn columns<'py>(
     Ok(all)
 }
 
+/// Where a function is defined: from a number on.
+#[derive(Clone, Copy)]
+pub struct Domain(f64);
+
+pub const FROM_ZERO: Domain = Domain(0.0);
+pub const ALL: Domain = Domain(f64::NEG_INFINITY);
+
+/// Refuses a place at which a function is not defined. NaN is passed on.
+pub fn check(name: &str, at: f64, Domain(first): Domain) -> PyResult<()> {
+    if at >= first || at.is_nan() {
+        return Ok(());
+    }
+    Err(PyValueError::new_err(format!(
+        "{name} = {at} is not allowed: it must be at least {first}, or NaN, which stays NaN"
+    )))
+}
+
 /// A function of one number, at a number or at each value of an array: a number or an array of the same shape. Where functions of the user have a
 /// part in it, `failure` is what keeps their error: the NaN that stands for a value is none.
 pub fn mapped<'py>(
     name: &str,
     at: &Bound<'py, PyAny>,
+    domain: Domain,
     of: impl Fn(f64) -> f64 + Sync,
     failure: impl FnOnce() -> Option<UserError>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let py = at.py();
+    let of = |at: f64| if at.is_nan() { at } else { of(at) };
     if let Some(number) = number(at) {
+        check(name, number, domain)?;
         let value = of(number);
         nothing_raised(failure())?;
         return Ok(value.into_pyobject(py)?.into_any());
     }
     let (values, shape) = values(name, at)?;
-    let values = py.detach(|| values.into_iter().map(&of).collect());
+    values.iter().try_for_each(|&at| check(name, at, domain))?;
+    let values = free(py, || values.into_iter().map(&of).collect());
     nothing_raised(failure())?;
     Ok(to_array(py, values, &shape)?.into_any())
 }

@@ -1,63 +1,59 @@
 //! A contact, or the run that owns it; what a run is asked for.
 
-use std::path::PathBuf;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::AtomicU64;
 use std::time::Duration;
 
-use pyo3::exceptions::{PyRuntimeError, PyTypeError};
-use pyo3::prelude::*;
+use crate::prelude::*;
 use viscocontact as vc;
 use viscocontact::load::LoadHistory;
 use viscocontact::rheology::{Elastic, Material};
 use viscocontact::run::{self as vr, Contact, Crossing, Stepping};
 use viscocontact::states::{ElasticStates, StatesContact as InStates};
 
-use crate::arrays::column;
-use crate::errors::OrRaise;
-use crate::recipe::Recipe;
-
 /// Times at which steps end or states are sampled, counted from the start of a run.
 ///
 /// A sequence of times [s] does as well. `+` joins them.
 ///
 /// >>> Times.every(0.1) + Times.decades(1e-6, 10)
-/// Times(...)
+/// Times.every(0.1) + Times.decades(1e-06, 10)
 #[pyclass(frozen, module = "viscocontact")]
-pub struct Times(vr::Times);
+pub struct Times {
+    times: vr::Times,
+    recipe: Recipe,
+}
+
+impl Times {
+    fn by(recipe: Recipe, times: vr::Times) -> Times {
+        Times { times, recipe }
+    }
+}
+
+makers! {Times, py:
+    /// The multiples of an `interval` [s].
+    every(interval: f64) = Ok::<_, vc::Error>(vr::Times::every(interval));
+
+    /// The time `first` [s], and so many in each decade beyond.
+    decades(first: f64, per_decade: Count) = Ok::<_, vc::Error>(vr::Times::decades(first, per_decade.0));
+}
 
 #[pymethods]
 impl Times {
-    /// The multiples of an `interval` [s].
-    #[staticmethod]
-    fn every(interval: f64) -> Times {
-        Times(vr::Times::every(interval))
+    fn __add__(slf: Bound<'_, Self>, other: Value<'_>) -> PyResult<Times> {
+        let joined = slf.get().times.clone().and(times("times", Some(other.clone()))?.unwrap_or_default());
+        Ok(Times::by(Recipe::new(slf.py(), "__add__", (slf, other))?, joined))
     }
 
-    /// The time `first` [s], and so many in each decade beyond.
-    #[staticmethod]
-    fn decades(first: f64, per_decade: usize) -> Times {
-        Times(vr::Times::decades(first, per_decade))
-    }
-
-    fn __add__(&self, other: &Bound<'_, PyAny>) -> PyResult<Times> {
-        let other = times("times", Some(other.clone()))?;
-        Ok(Times(self.0.clone().and(other.unwrap_or_default())))
-    }
-
-    fn __radd__(&self, other: &Bound<'_, PyAny>) -> PyResult<Times> {
-        self.__add__(other)
-    }
-
-    fn __repr__(&self) -> &'static str {
-        "Times(...)"
+    fn __radd__(slf: Bound<'_, Self>, other: Value<'_>) -> PyResult<Times> {
+        Times::__add__(slf, other)
     }
 }
+
+made_by_calls!(Times);
 
 pub fn times(name: &str, given: Option<Bound<'_, PyAny>>) -> PyResult<Option<vr::Times>> {
     let Some(given) = given else { return Ok(None) };
     match given.cast::<Times>() {
-        Ok(times) => Ok(Some(times.get().0.clone())),
+        Ok(times) => Ok(Some(times.get().times.clone())),
         Err(_) => Ok(Some(column(name, &given)?.into())),
     }
 }
@@ -69,7 +65,6 @@ pub struct Options {
     pub until: f64,
     pub stop_at: Option<vr::Times>,
     pub sample_at: Option<vr::Times>,
-    pub progress: Option<Py<PyAny>>,
     pub fields_to: Option<f64>,
     pub autosave: Option<(PathBuf, Duration)>,
 }
@@ -143,10 +138,13 @@ led! {
     InStates, false => crate::states_contact::StatesContact;
 }
 
+/// What the garbage collector of Python sees of a run: its load, and the functions of its events.
+pub type Called = (Py<PyAny>, Vec<Function>);
+
 /// A contact, or the run that owns it.
 pub enum Held<C: Led> {
     Free(C),
-    Run(Box<vr::Run<'static, C>>, u64),
+    Run(Box<vr::Run<'static, C>>, u64, Called),
     Lost,
 }
 
@@ -157,7 +155,7 @@ impl<C: Led> Held<C> {
     pub fn contact(&self) -> PyResult<&C> {
         match self {
             Held::Free(contact) => Ok(contact),
-            Held::Run(run, _) => Ok(run.contact()),
+            Held::Run(run, ..) => Ok(run.contact()),
             Held::Lost => Err(lost()),
         }
     }
@@ -165,7 +163,7 @@ impl<C: Led> Held<C> {
     /// The contact, taken out of its run, which ends.
     pub fn free(&mut self) -> PyResult<&mut C> {
         if let Held::Run(..) = self
-            && let Held::Run(run, _) = std::mem::replace(self, Held::Lost)
+            && let Held::Run(run, ..) = std::mem::replace(self, Held::Lost)
         {
             *self = Held::Free(run.into_contact());
         }
@@ -176,22 +174,22 @@ impl<C: Led> Held<C> {
     }
 
     /// The run of this number.
-    pub fn run(&mut self, number: u64) -> PyResult<(&mut vr::Run<'static, C>, u64)> {
+    pub fn run(&mut self, number: u64) -> PyResult<&mut vr::Run<'static, C>> {
         match self {
-            Held::Run(run, own) if *own == number => Ok((run, number)),
-            _ => Err(PyRuntimeError::new_err("the run is over: its contact went on by another run or step")),
+            Held::Run(run, own, _) if *own == number => Ok(run),
+            _ => Err(over()),
         }
     }
 
     pub fn run_ref(&self, number: u64) -> PyResult<&vr::Run<'static, C>> {
         match self {
-            Held::Run(run, own) if *own == number => Ok(run),
-            _ => Err(PyRuntimeError::new_err("the run is over: its contact went on by another run or step")),
+            Held::Run(run, own, _) if *own == number => Ok(run),
+            _ => Err(over()),
         }
     }
 
     /// Begins a run, and returns its number.
-    pub fn follow(&mut self, options: &Options, cancel: Arc<AtomicBool>) -> PyResult<u64> {
+    pub fn follow(&mut self, options: Options, load: Py<PyAny>, cancel: Arc<AtomicBool>) -> PyResult<u64> {
         options.check().or_raise()?;
         self.free()?;
         let Held::Free(contact) = std::mem::replace(self, Held::Lost) else { return Err(lost()) };
@@ -202,7 +200,7 @@ impl<C: Led> Held<C> {
         if let Some((path, every)) = &options.autosave {
             run = run.autosave_to(path, *every);
         }
-        *self = Held::Run(Box::new(run), number);
+        *self = Held::Run(Box::new(run), number, (load, Vec::new()));
         Ok(number)
     }
 
@@ -210,13 +208,25 @@ impl<C: Led> Held<C> {
         &mut self,
         number: u64,
         quantity: impl Fn(&C) -> f64 + Send + Sync + 'static,
+        function: Option<Function>,
         crossing: Crossing,
     ) -> PyResult<()> {
         self.run(number)?;
-        let Held::Run(run, _) = std::mem::replace(self, Held::Lost) else { return Err(lost()) };
-        *self = Held::Run(Box::new(run.stop_when(quantity, crossing).or_raise()?), number);
+        let Held::Run(run, _, (load, mut called)) = std::mem::replace(self, Held::Lost) else { return Err(lost()) };
+        called.extend(function);
+        *self = Held::Run(Box::new(run.stop_when(quantity, crossing).or_raise()?), number, (load, called));
         Ok(())
     }
+
+    pub fn traverse(&self, visit: &PyVisit<'_>) -> Traversed {
+        let Held::Run(_, _, (load, called)) = self else { return Ok(()) };
+        visit.call(load)?;
+        called.iter().try_for_each(|function| visit.call(&*function.0))
+    }
+}
+
+fn over() -> PyErr {
+    PyRuntimeError::new_err("the run is over: its contact went on by another run or step")
 }
 
 /// The error of a contact that a panic has lost.

@@ -1,37 +1,19 @@
 //! Reports of steps, and states of bodies.
 
-use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use crate::prelude::*;
 use viscocontact::contact as ct;
 
-use crate::errors::in_python;
-
 /// The outcome and the cost of one step.
+///
+/// >>> contact = ViscoelasticContact(Grid(32, 4e-3), Shape.sphere(10e-3), Material(Rheology.maxwell(1e6, 1.0)))
+/// >>> report = contact.step(0.5, Load.force(0.5))
+/// >>> report.time, report.as_dict()["force"], report.warnings
+/// (0.5, 0.5, [])
 #[pyclass(frozen, module = "viscocontact")]
 pub struct StepReport(pub ct::StepReport);
 
 #[pymethods]
 impl StepReport {
-    /// The numbers by name: a row of a `pandas.DataFrame`.
-    fn as_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let of = &self.0;
-        Ok(dict! { py;
-            "time": of.time,
-            "dt": of.dt,
-            "force": of.force,
-            "approach": of.approach,
-            "tilt1": of.tilt[0],
-            "tilt2": of.tilt[1],
-            "convolution_equivalents": of.convolution_equivalents(),
-            "residual": of.residual,
-            "contact_cells": of.contact_cells,
-            "time_error": of.time_error,
-            "iterations": of.iterations,
-            "fallback_iterations": of.fallback_iterations,
-            "warnings": self.warnings(),
-        })
-    }
-
     /// The numbers behind the warnings, None where the scene is far from the limit: "max_slope", "compression", "cells_across", "cells_in_wave", "periods",
     /// "cells_in_zone", "modulus" [Pa], "touch" [m], "unmeasured" and "wake".
     #[getter]
@@ -59,6 +41,8 @@ pub fn figures<'py>(py: Python<'py>, of: &ct::Figures) -> PyResult<Bound<'py, Py
         "wake": of.wake,
     })
 }
+
+numbers!(StepReport);
 
 getters! {StepReport, of:
     /// Time at the end of the step [s].
@@ -94,6 +78,11 @@ getters! {StepReport, of:
 }
 
 /// The state of one rigid body.
+///
+/// >>> contact = ElasticContact(Grid(32, 4e-3), Shape.sphere(10e-3), 4e6)
+/// >>> _ = contact.solve(Load.force(0.5))
+/// >>> contact.bodies[0].force
+/// 0.5
 #[pyclass(frozen, module = "viscocontact")]
 pub struct BodyState(pub ct::BodyState);
 
@@ -102,11 +91,15 @@ impl BodyState {
     fn __repr__(&self) -> String {
         let of = &self.0;
         format!(
-            "BodyState(force={:e}, approach={:e}, tilt={:?}, contact_cells={})",
-            of.force, of.approach, of.tilt, of.contact_cells
+            "BodyState(force={} N, approach={} m, contact_cells={})",
+            digits(of.force),
+            digits(of.approach),
+            of.contact_cells
         )
     }
 }
+
+numbers!(BodyState);
 
 getters! {BodyState, of:
     /// Approach at the origin of the grid [m].
