@@ -9,7 +9,7 @@ use pyo3::types::{PyBytes, PyDict, PyTuple, PyType};
 use crate::contact::ViscoelasticContact;
 use crate::errors::OrRaise;
 use crate::held::{Options, saved_every, stepping, times};
-use crate::loads::history;
+use crate::loads::histories;
 use crate::run::Run;
 use crate::scratch::{bytes_of, file_of};
 use crate::states_contact::StatesContact;
@@ -27,6 +27,7 @@ macro_rules! both {
             /// Parameters
             /// ----------
             /// load : LoadHistory, Load (held), sequence of (time, load), or function of time that returns a Load
+            ///     In space of several bodies, a sequence with one of these for each.
             /// until : float
             /// tolerance : float, default 1e-3
             ///     Steps are as long as their estimated error in time allows.
@@ -68,7 +69,7 @@ macro_rules! both {
                 let (stop_at, sample_at) = (times("stop_at", stop_at)?, times("sample_at", sample_at)?);
                 let (stepping, autosave) = (stepping(dt, tolerance)?, saved_every(autosave)?);
                 let options =
-                    Options { history: history(load)?, stepping, until, stop_at, sample_at, progress, fields_to, autosave };
+                    Options { histories: histories(load)?, stepping, until, stop_at, sample_at, progress, fields_to, autosave };
                 let mut contact = slf.borrow_mut();
                 let cancel = Arc::clone(&contact.cancel);
                 let run = contact.held.follow(&options, cancel)?;

@@ -11,8 +11,11 @@ use pyo3::exceptions::{
     PyPermissionError, PyRuntimeError, PyValueError,
 };
 use pyo3::prelude::*;
+use viscocontact::states::StatesError;
 use viscocontact::{Error, ErrorKind, UserError};
 use viscocontact_identify::Error as IdentifyError;
+
+use crate::friction::slides;
 
 create_exception!(
     viscocontact,
@@ -57,6 +60,9 @@ pub fn raise(error: &Error) -> PyErr {
         return raised;
     }
     let text = with_causes(error);
+    if let Error::States(StatesError::Slides { over_limit, .. }) = error {
+        return slides(text, *over_limit, None);
+    }
     match error.kind() {
         ErrorKind::File => match error.io_kind() {
             Some(io::ErrorKind::NotFound) => PyFileNotFoundError::new_err(text),
@@ -86,7 +92,7 @@ fn with_causes(error: &dyn StdError) -> String {
 }
 
 /// What messages of the crates name, and what it is called here.
-const NAMES: [(&str, &str); 12] = [
+const NAMES: [(&str, &str); 15] = [
     (
         "name the times to fit one over, with Builder::times (first and last) or Builder::times_of (a load history and its end), or fit one with Rheology::series or Material::fitted",
         "fit one with Material.fitted(first, last), or for a contact in space give times=(first, last) or times=(load, until)",
@@ -104,6 +110,9 @@ const NAMES: [(&str, &str); 12] = [
     ("of a Sweep of this process", "of ElasticStates.sweep in this process, neither loaded nor pickled"),
     ("Study::domain", "domain=(length, length)"),
     ("Earlier::Replace", "earlier=\"replace\""),
+    ("a greater Settings::tolerance", "a greater tolerance="),
+    ("call with_friction first", "give friction= or estimated_friction="),
+    ("with_estimated_friction takes", "estimated_friction= takes"),
     ("::", "."),
 ];
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Duration;
 
-use pyo3::exceptions::{PyRuntimeError, PyTypeError};
+use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use viscocontact as vc;
 use viscocontact::load::LoadHistory;
@@ -64,7 +64,7 @@ pub fn times(name: &str, given: Option<Bound<'_, PyAny>>) -> PyResult<Option<vr:
 
 /// What a run is asked for.
 pub struct Options {
-    pub history: Arc<dyn LoadHistory>,
+    pub histories: Vec<Arc<dyn LoadHistory>>,
     pub stepping: Stepping,
     pub until: f64,
     pub stop_at: Option<vr::Times>,
@@ -94,7 +94,7 @@ impl Options {
     /// Refuses times that a run would refuse, which would take the contact with it.
     fn check(&self) -> vc::Result<()> {
         let small = InStates::new(&ElasticStates::sphere(1.0)?, &Material::incompressible(Elastic::new(1.0)?))?;
-        self.ask(small.into_follow(Arc::clone(&self.history), self.stepping, self.until)).map(drop)
+        self.ask(small.into_follow(Arc::clone(&self.histories[0]), self.stepping, self.until)).map(drop)
     }
 
     fn ask<C: Led>(&self, run: vr::Run<'static, C>) -> vc::Result<vr::Run<'static, C>> {
@@ -113,6 +113,14 @@ pub trait Led: Contact {
 
     fn with_fields(run: vr::Run<'static, Self>, accuracy: f64) -> vc::Result<vr::Run<'static, Self>>;
 
+    /// A run along a history for each body.
+    fn along(
+        self,
+        histories: Vec<Box<dyn LoadHistory>>,
+        stepping: Stepping,
+        until: f64,
+    ) -> vc::Result<vr::Run<'static, Self>>;
+
     /// The object of Python.
     fn into_object(self, py: Python<'_>, recipe: Recipe) -> PyResult<Py<PyAny>>;
 
@@ -123,12 +131,16 @@ pub trait Led: Contact {
 
 /// The objects of the contact in space and of the one on elastic states.
 macro_rules! led {
-    ($($contact:ty, $in_space:literal => $class:ty;)*) => {$(
+    ($($contact:ty, $in_space:literal, $along:path => $class:ty;)*) => {$(
         impl Led for $contact {
             const IN_SPACE: bool = $in_space;
 
             fn with_fields(run: vr::Run<'static, Self>, accuracy: f64) -> vc::Result<vr::Run<'static, Self>> {
                 run.fields_to(accuracy)
+            }
+
+            fn along(self, histories: Vec<Box<dyn LoadHistory>>, stepping: Stepping, until: f64) -> vc::Result<vr::Run<'static, Self>> {
+                $along(self, histories, stepping, until)
             }
 
             fn into_object(self, py: Python<'_>, recipe: Recipe) -> PyResult<Py<PyAny>> {
@@ -139,8 +151,17 @@ macro_rules! led {
 }
 
 led! {
-    vc::ViscoelasticContact, true => crate::contact::ViscoelasticContact;
-    InStates, false => crate::states_contact::StatesContact;
+    vc::ViscoelasticContact, true, vc::ViscoelasticContact::into_follow_each => crate::contact::ViscoelasticContact;
+    InStates, false, of_one_body => crate::states_contact::StatesContact;
+}
+
+fn of_one_body(
+    contact: InStates,
+    mut histories: Vec<Box<dyn LoadHistory>>,
+    stepping: Stepping,
+    until: f64,
+) -> vc::Result<vr::Run<'static, InStates>> {
+    Ok(contact.into_follow(histories.swap_remove(0), stepping, until))
 }
 
 /// A contact, or the run that owns it.
@@ -193,11 +214,16 @@ impl<C: Led> Held<C> {
     /// Begins a run, and returns its number.
     pub fn follow(&mut self, options: &Options, cancel: Arc<AtomicBool>) -> PyResult<u64> {
         options.check().or_raise()?;
-        self.free()?;
+        let (bodies, given) = (self.free()?.in_space().map_or(1, |fields| fields.bodies()), options.histories.len());
+        if given != bodies {
+            return Err(PyValueError::new_err(format!(
+                "load: {given} histories given, {bodies} needed, one for each body"
+            )));
+        }
         let Held::Free(contact) = std::mem::replace(self, Held::Lost) else { return Err(lost()) };
         let number = NEXT.fetch_add(1, Ordering::Relaxed);
-        let run =
-            contact.into_follow(Arc::clone(&options.history), options.stepping, options.until).cancelled_by(cancel);
+        let histories = options.histories.iter().map(|one| Box::new(Arc::clone(one)) as Box<dyn LoadHistory>).collect();
+        let run = contact.along(histories, options.stepping, options.until).or_raise()?.cancelled_by(cancel);
         let mut run = options.ask(run).or_raise()?;
         if let Some((path, every)) = &options.autosave {
             run = run.autosave_to(path, *every);

@@ -13,6 +13,7 @@ mod elastic;
 mod errors;
 mod fields;
 mod fits;
+mod friction;
 mod grid;
 mod held;
 mod identify;
@@ -31,6 +32,7 @@ mod run;
 mod scene;
 mod scratch;
 mod shapes;
+mod sheared;
 mod sliding;
 mod states;
 mod states_contact;
@@ -69,6 +71,8 @@ mod _native {
     use crate::fields::Fields;
     #[pymodule_export]
     use crate::fits::{Estimate, Fit, write_fits};
+    #[pymodule_export]
+    use crate::friction::{FrictionContact, FrictionLimit, FrictionReport, ShearLoad, Slides};
     #[pymodule_export]
     use crate::grid::Grid;
     #[pymodule_export]

@@ -232,6 +232,17 @@ pub fn history(given: &Bound<'_, PyAny>) -> PyResult<Arc<dyn History>> {
     Ok(Arc::new(ld::PiecewiseLinear::new(&rows).or_raise()?))
 }
 
+/// The histories of a run: one, or a sequence with one for each body.
+pub fn histories(given: &Bound<'_, PyAny>) -> PyResult<Vec<Arc<dyn History>>> {
+    let one = match history(given) {
+        Ok(one) => return Ok(vec![one]),
+        Err(error) => error,
+    };
+    let each = given.extract::<Vec<Bound<'_, PyAny>>>().ok().filter(|each| !each.is_empty());
+    let each = each.and_then(|each| each.iter().map(history).collect::<PyResult<_>>().ok());
+    each.ok_or(one)
+}
+
 /// The loads of a step: one, or one for each body.
 pub fn loads(given: &Bound<'_, PyAny>) -> PyResult<Vec<ld::Load>> {
     if let Ok(load) = given.cast::<Load>() {

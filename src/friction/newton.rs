@@ -122,7 +122,7 @@ impl Solution {
             let residual = self.judge(problem, work) / scale;
             outcome =
                 Outcome { iterations: iteration, residual, is_solved: residual <= tolerance && balance <= tolerance };
-            if outcome.is_solved || iteration == MOST_STEPS || !residual.is_finite() {
+            if outcome.is_solved || iteration == MOST_STEPS || !residual.is_finite() || problem.is_cancelled() {
                 break;
             }
             if iteration > PATIENCE && iteration % 4 == 0 {
@@ -265,7 +265,7 @@ impl Solution {
         }
         let first = size;
         for _ in 0..MOST_GRADIENTS {
-            if size <= 0.0 || size.is_nan() {
+            if size <= 0.0 || size.is_nan() || problem.is_cancelled() {
                 break;
             }
             self.operate(problem, kernel, direction, image, (normals, curvature));
