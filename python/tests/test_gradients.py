@@ -1,5 +1,7 @@
 """Gradients with respect to the shape: against differences, and through PyTorch and JAX where they are installed."""
 
+import doctest
+
 import numpy as np
 import pytest
 import viscocontact as vc
@@ -50,6 +52,11 @@ def test_what_has_no_gradient_says_so():
         closed.approach_gradient()
     apart = vc.ElasticContact(GRID, GAP, 4e6)
     assert (apart.approach_gradient() == 0).all()
+
+
+def test_examples_of_docstrings():
+    report = doctest.testmod(gradients)
+    assert report.failed == 0 < report.attempted
 
 
 def test_pytorch():

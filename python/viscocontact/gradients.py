@@ -17,7 +17,8 @@ derivatives with respect to the gap of each cell, which the contacts know in clo
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -29,7 +30,8 @@ __all__ = ["Approaches", "creeping", "elastic"]
 _Array = NDArray[np.float64]
 
 
-class Approaches(NamedTuple):
+@dataclass(frozen=True)
+class Approaches:
     """A function of the gap that returns `count` approaches [m] and their gradients, of the shape (count, cells, cells).
 
     Any function of this kind does: `Approaches(function, count).torch()`.
@@ -44,25 +46,23 @@ class Approaches(NamedTuple):
 
     def torch(self) -> Callable[[Any], Any]:
         """A function of a tensor, which PyTorch differentiates."""
-        import torch
+        import torch  # type: ignore
 
-        class Approach(torch.autograd.Function):  # type: ignore
-            @staticmethod
-            def forward(ctx: Any, gap: Any) -> Any:
-                approaches, gradient = self(gap.detach().cpu().numpy())
-                ctx.save_for_backward(torch.as_tensor(gradient).to(gap))
-                return torch.as_tensor(approaches).to(gap)
+        def forward(ctx: Any, gap: Any) -> Any:
+            approaches, gradient = self(gap.detach().cpu().numpy())
+            ctx.save_for_backward(torch.as_tensor(gradient).to(gap))
+            return torch.as_tensor(approaches).to(gap)
 
-            @staticmethod
-            @torch.autograd.function.once_differentiable  # type: ignore
-            def backward(ctx: Any, by: Any) -> Any:
-                return torch.tensordot(by, *ctx.saved_tensors, dims=1)
+        @torch.autograd.function.once_differentiable
+        def backward(ctx: Any, by: Any) -> Any:
+            return torch.tensordot(by, ctx.saved_tensors[0], 1)
 
-        return Approach.apply  # type: ignore
+        both = {"forward": staticmethod(forward), "backward": staticmethod(backward)}
+        return type("Approach", (torch.autograd.Function,), both).apply  # type: ignore
 
     def jax(self) -> Callable[[Any], Any]:
         """A function of an array, which JAX differentiates, also within `jax.jit`. Set `jax_enable_x64` for its digits."""
-        import jax
+        import jax  # type: ignore
 
         def both(gap: Any) -> Any:
             shapes = [jax.ShapeDtypeStruct((self.count, *inner), gap.dtype) for inner in ((), gap.shape)]
