@@ -6,7 +6,7 @@ import builtins
 import os
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, Literal, TypeAlias, final
+from typing import Any, Literal, TypeAlias, Union, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,11 +20,11 @@ _Tilts: TypeAlias = Sequence[float | None]
 _Quantity: TypeAlias = Literal["von_mises", "tresca", "mean", "principal_1", "principal_3"]
 _Field: TypeAlias = Literal["pressure", "gap", "displacement", "traction"]
 _StrPath: TypeAlias = str | os.PathLike[str]
-# a list of lists is no gap: an array is
-_GeometryLike: TypeAlias = Shape | NDArray[Any] | Sequence[Shape]
-_Showing: TypeAlias = ViscoelasticContact | ElasticContact | SteadySliding | Fields
-_LoadLike: TypeAlias = Load | LoadHistory | Sequence[tuple[float, Load]] | Callable[[float], Load]
-_TimesLike: TypeAlias = Times | ArrayLike
+# in a form that pdoc can evaluate; a list of lists is no gap: an array is
+_GeometryLike: TypeAlias = Union["Shape", NDArray[Any], Sequence["Shape"]]
+_Showing: TypeAlias = Union["ViscoelasticContact", "ElasticContact", "SteadySliding", "Fields"]
+_LoadLike: TypeAlias = Union["Load", "LoadHistory", Sequence[tuple[float, "Load"]], Callable[[float], "Load"]]
+_TimesLike: TypeAlias = Union["Times", ArrayLike]
 _ModelLike: TypeAlias = str | tuple[Literal["prony"], int] | tuple[Literal["power_law"], float]
 # known, fitted, or ("from", start)
 _OfCurve: TypeAlias = float | bool | tuple[Literal["from"], float] | None
