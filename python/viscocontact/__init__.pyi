@@ -1,4 +1,4 @@
-"""Types of the package. The docstrings are those of the classes: help(viscocontact.Shape)."""
+# Types of the package. The docstrings are those of the classes: help(viscocontact.Shape)
 
 from __future__ import annotations
 
