@@ -2,8 +2,8 @@
 
     python execute.py [--write] [name ...]
 
-Without `--write` their text must come out as it is stored, in the digits that they print; with it text and pictures are stored, and the last picture of each
-is written into `pictures`. A cell with the tag of a package, as `tamaas`, is left out where this package is not installed.
+Without `--write` their text must come out as it is stored, in the digits that they print; with it text and pictures are stored, and pictures are
+written into `pictures` as well, for the gallery. A cell with the tag of a package, as `tamaas`, is left out where this package is not installed.
 """
 
 import argparse
@@ -62,7 +62,7 @@ def words(found):
 
 
 def run(path, write):
-    notebook, names, last = json.loads(path.read_text(encoding="utf-8")), {"__name__": "__main__"}, None
+    notebook, names, drawn = json.loads(path.read_text(encoding="utf-8")), {"__name__": "__main__"}, []
     plt.show = lambda *_, **__: None
     for number, cell in enumerate(notebook["cells"]):
         missing = [tag for tag in cell["metadata"].get("tags", []) if importlib.util.find_spec(tag) is None]
@@ -72,13 +72,13 @@ def run(path, write):
         found = outputs("".join(cell["source"]), names)
         if not write and words(found) != words(cell["outputs"]):
             sys.exit(f"{path.name}, cell {number}: {words(found)} where {words(cell['outputs'])} is stored")
-        drawn = [base64.b64decode(output["data"]["image/png"]) for output in found if "data" in output]
-        last = drawn[-1] if drawn else last
+        drawn += [base64.b64decode(output["data"]["image/png"]) for output in found if "data" in output]
         cell["outputs"] = found
     if write:
         path.write_text(json.dumps(notebook, indent=1, ensure_ascii=False, sort_keys=True) + "\n", encoding="utf-8")
         (FOLDER / "pictures").mkdir(exist_ok=True)
-        (FOLDER / "pictures" / f"{path.stem}.png").write_bytes(last)
+        for number, picture in enumerate(drawn):
+            (FOLDER / "pictures" / f"{path.stem}_{number}.png").write_bytes(picture)
 
 
 def main():
