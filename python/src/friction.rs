@@ -122,10 +122,8 @@ made_by_calls!(FrictionLimit);
 /// angle : float, default 0
 ///     By which the body has turned [rad]; without `torque`.
 ///
-/// >>> ShearLoad((0.3, 0.0))                                  # pulled along x1; it does not turn
-/// ShearLoad((0.3, 0.0))
-/// >>> ShearLoad((0.0, None), (None, 2e-6), torque=0.0)       # moved along x2, free along x1 and to turn
-/// ShearLoad((0.0, None), (None, 2e-06), torque=0.0)
+/// >>> pulled = ShearLoad((0.3, 0.0))                            # along x1; it does not turn
+/// >>> moved = ShearLoad((0.0, None), (None, 2e-6), torque=0.0)  # along x2, free along x1 and to turn
 #[pyclass(frozen, module = "viscocontact")]
 pub struct ShearLoad {
     load: vf::ShearLoad,
@@ -149,16 +147,9 @@ impl ShearLoad {
             component("force and motion along x2", along(1))?,
             component("torque and angle", twist)?,
         ];
-        let [force, motion] = [force, motion].map(|given| given.map(|[x1, x2]| (x1, x2)));
-        let recipe = match motion {
-            None => Recipe::new(py, "", (force,)),
-            Some(_) => Recipe::new(py, "", (force, motion)),
-        }?;
-        let twist = PyDict::new(py);
-        for (name, value) in [("torque", torque), ("angle", angle)] {
-            value.map_or(Ok(()), |value| twist.set_item(name, value))?;
-        }
-        let recipe = recipe.with_keywords(Some(&twist))?;
+        let pairs = (force.map(<(_, _)>::from), motion.map(<(_, _)>::from));
+        let recipe =
+            Recipe::new(py, "", pairs)?.with_keywords(Some(&dict! { py; "torque": torque, "angle": angle }))?;
         Ok(ShearLoad { load: vf::ShearLoad { components }, recipe })
     }
 }
@@ -199,13 +190,6 @@ pub struct FrictionContact {
     last: Duration,
 }
 
-/// The limit of a coefficient or of an object.
-#[derive(FromPyObject)]
-enum Limited<'py> {
-    Limit(PyRef<'py, FrictionLimit>),
-    Coefficient(f64),
-}
-
 #[pymethods]
 impl FrictionContact {
     #[new]
@@ -221,10 +205,10 @@ impl FrictionContact {
         friction: &Bound<'_, PyAny>,
         options: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<FrictionContact> {
-        let limit = match friction.extract() {
-            Ok(Limited::Limit(limit)) => limit.limit.clone(),
-            Ok(Limited::Coefficient(f)) => Shared(Arc::new(vf::Coulomb::new(f).or_raise()?)),
-            Err(_) => return Err(PyTypeError::new_err("friction: a number or a FrictionLimit is needed")),
+        let needed = |_| PyTypeError::new_err("friction: a number or a FrictionLimit is needed");
+        let limit = match friction.cast::<FrictionLimit>() {
+            Ok(limit) => limit.get().limit.clone(),
+            Err(_) => Shared(Arc::new(vf::Coulomb::new(friction.extract().map_err(needed)?).or_raise()?)),
         };
         if options.is_some_and(|options| options.contains("time_rule").unwrap_or(false)) {
             return Err(unexpected("time_rule"));
@@ -239,13 +223,21 @@ impl FrictionContact {
     /// A step in which both rise together is oblique loading. To press first and then to shear takes two steps, of no time if it happens at
     /// once. Ctrl-C ends the step within an iteration. A step that fails leaves the contact as it was.
     ///
+    /// Returns the cost and accuracy: the report of the "normal" contact, Newton steps along the surface ("iterations"), their work in
+    /// "convolutions" of a pressure on the whole grid, and the largest slip of a cell that sticks, over the largest displacement ("residual").
+    ///
     /// Raises `Slides` if friction cannot carry the forces; otherwise as `ViscoelasticContact.step`.
-    fn step(&mut self, py: Python<'_>, dt: f64, load: &Load, shear: &ShearLoad) -> PyResult<FrictionReport> {
+    fn step<'py>(&mut self, py: Python<'py>, dt: f64, load: &Load, shear: &ShearLoad) -> PyResult<Bound<'py, PyDict>> {
         let FrictionContact { contact, cancel, last } = self;
         let (cells, load, shear) = (contact.normal().grid().len(), load.load, shear.load);
         let step = |slow| interruptible(py, slow, cancel, || contact.step_unless(cancel, dt, load, shear));
         match timed(last, cells, step)? {
-            vf::Outcome::Holds(report) => Ok(FrictionReport(*report)),
+            vf::Outcome::Holds(of) => Ok(dict! { py;
+                "normal": StepReport(of.normal),
+                "iterations": of.iterations,
+                "convolutions": of.convolution_equivalents,
+                "residual": of.residual,
+            }),
             vf::Outcome::Slides { direction, over_limit } => {
                 let text = format!(
                     "the body slides: the forces along the surface are {over_limit:.5} times what friction carries"
@@ -321,27 +313,4 @@ getters! {FrictionContact.contact, of:
     force: (f64, f64, f64) = of.force().into();
     /// Cells that stick.
     stick_cells: usize = of.stick_cells();
-}
-
-/// The cost and accuracy of a step with friction.
-#[pyclass(frozen, module = "viscocontact")]
-pub struct FrictionReport(vf::FrictionReport);
-
-#[pymethods]
-impl FrictionReport {
-    fn __repr__(&self) -> String {
-        let of = &self.0;
-        format!("FrictionReport(iterations={}, residual={:e}, normal={})", of.iterations, of.residual, of.normal)
-    }
-}
-
-getters! {FrictionReport, of:
-    /// The report of the normal contact.
-    normal: StepReport = StepReport(of.normal);
-    /// Newton steps.
-    iterations: usize = of.iterations;
-    /// Work along the surface, in convolutions of a pressure on the whole grid.
-    convolution_equivalents: f64 = of.convolution_equivalents;
-    /// The largest slip of a cell that sticks, over the largest displacement.
-    residual: f64 = of.residual;
 }

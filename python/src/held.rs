@@ -114,12 +114,7 @@ pub trait Led: Contact {
     fn with_fields(run: vr::Run<'static, Self>, accuracy: f64) -> vc::Result<vr::Run<'static, Self>>;
 
     /// A run along a history for each body.
-    fn along(
-        self,
-        histories: Vec<Box<dyn LoadHistory>>,
-        stepping: Stepping,
-        until: f64,
-    ) -> vc::Result<vr::Run<'static, Self>>;
+    fn along(self, of: &Options) -> vc::Result<vr::Run<'static, Self>>;
 
     /// The object of Python.
     fn into_object(self, py: Python<'_>, recipe: Recipe) -> PyResult<Py<PyAny>>;
@@ -131,7 +126,7 @@ pub trait Led: Contact {
 
 /// The objects of the contact in space and of the one on elastic states.
 macro_rules! led {
-    ($($contact:ty, $in_space:literal, $along:path => $class:ty;)*) => {$(
+    ($($contact:ty, $in_space:literal, $along:expr => $class:ty;)*) => {$(
         impl Led for $contact {
             const IN_SPACE: bool = $in_space;
 
@@ -139,8 +134,8 @@ macro_rules! led {
                 run.fields_to(accuracy)
             }
 
-            fn along(self, histories: Vec<Box<dyn LoadHistory>>, stepping: Stepping, until: f64) -> vc::Result<vr::Run<'static, Self>> {
-                $along(self, histories, stepping, until)
+            fn along(self, of: &Options) -> vc::Result<vr::Run<'static, Self>> {
+                ($along)(self, of)
             }
 
             fn into_object(self, py: Python<'_>, recipe: Recipe) -> PyResult<Py<PyAny>> {
@@ -151,17 +146,13 @@ macro_rules! led {
 }
 
 led! {
-    vc::ViscoelasticContact, true, vc::ViscoelasticContact::into_follow_each => crate::contact::ViscoelasticContact;
-    InStates, false, of_one_body => crate::states_contact::StatesContact;
-}
-
-fn of_one_body(
-    contact: InStates,
-    mut histories: Vec<Box<dyn LoadHistory>>,
-    stepping: Stepping,
-    until: f64,
-) -> vc::Result<vr::Run<'static, InStates>> {
-    Ok(contact.into_follow(histories.swap_remove(0), stepping, until))
+    vc::ViscoelasticContact, true, |contact: Self, of: &Options| {
+        let histories = of.histories.iter().map(|one| Box::new(Arc::clone(one)) as Box<dyn LoadHistory>);
+        contact.into_follow_each(histories.collect(), of.stepping, of.until)
+    } => crate::contact::ViscoelasticContact;
+    InStates, false, |contact: Self, of: &Options| {
+        Ok(contact.into_follow(Arc::clone(&of.histories[0]), of.stepping, of.until))
+    } => crate::states_contact::StatesContact;
 }
 
 /// A contact, or the run that owns it.
@@ -222,8 +213,7 @@ impl<C: Led> Held<C> {
         }
         let Held::Free(contact) = std::mem::replace(self, Held::Lost) else { return Err(lost()) };
         let number = NEXT.fetch_add(1, Ordering::Relaxed);
-        let histories = options.histories.iter().map(|one| Box::new(Arc::clone(one)) as Box<dyn LoadHistory>).collect();
-        let run = contact.along(histories, options.stepping, options.until).or_raise()?.cancelled_by(cancel);
+        let run = contact.along(options).or_raise()?.cancelled_by(cancel);
         let mut run = options.ask(run).or_raise()?;
         if let Some((path, every)) = &options.autosave {
             run = run.autosave_to(path, *every);

@@ -72,7 +72,7 @@ mod _native {
     #[pymodule_export]
     use crate::fits::{Estimate, Fit, write_fits};
     #[pymodule_export]
-    use crate::friction::{FrictionContact, FrictionLimit, FrictionReport, ShearLoad, Slides};
+    use crate::friction::{FrictionContact, FrictionLimit, ShearLoad, Slides};
     #[pymodule_export]
     use crate::grid::Grid;
     #[pymodule_export]

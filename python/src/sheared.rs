@@ -15,21 +15,17 @@ use crate::states_contact::StatesContact;
 
 /// A contact with the friction of keywords.
 pub fn rubbing(
-    mut contact: st::StatesContact,
+    contact: st::StatesContact,
     friction: Option<f64>,
     estimated_friction: Option<f64>,
     sheared_by: Option<&Bound<'_, PyAny>>,
-    slip_from_start: bool,
 ) -> PyResult<st::StatesContact> {
-    contact = match (friction, estimated_friction) {
+    let contact = match (friction, estimated_friction) {
         (None, None) => contact,
         (Some(coefficient), None) => contact.with_friction(coefficient).or_raise()?,
         (None, Some(coefficient)) => contact.with_estimated_friction(coefficient).or_raise()?,
         _ => return Err(PyTypeError::new_err("give friction or estimated_friction, not both")),
     };
-    if slip_from_start {
-        contact = contact.with_slip_from_start().or_raise()?;
-    }
     match sheared_by {
         Some(load) => contact.sheared_by(history(load)?).or_raise(),
         None => Ok(contact),

@@ -39,8 +39,6 @@ use crate::temperature::TemperatureHistory;
 ///     The same of any constant ν, as an estimate: the displacement of a rough surface of ν = ½ is off by 1.7 % in the median of 12.
 /// sheared_by : as the load of `follow`, optional
 ///     What acts along the surface in all steps: forces, approaches as displacements, springs.
-/// slip_from_start : bool
-///     Whether the whole motion of a step is slip of what it meets, as other programs count it.
 ///
 /// >>> contact = StatesContact(ElasticStates.sphere(10e-3), Material(Rheology.maxwell(1e6, 1.0)))
 /// >>> report = contact.step(0.0, Load.force(1.0))
@@ -72,7 +70,7 @@ impl StatesContact {
 #[pymethods]
 impl StatesContact {
     #[new]
-    #[pyo3(signature = (states, material, *, temperature=None, linear_steps=false, merge_error=None, exact_states=false, friction=None, estimated_friction=None, sheared_by=None, slip_from_start=false))]
+    #[pyo3(signature = (states, material, *, temperature=None, linear_steps=false, merge_error=None, exact_states=false, friction=None, estimated_friction=None, sheared_by=None))]
     #[allow(clippy::too_many_arguments)]
     fn new(
         py: Python<'_>,
@@ -85,7 +83,6 @@ impl StatesContact {
         friction: Option<f64>,
         estimated_friction: Option<f64>,
         sheared_by: Option<Bound<'_, PyAny>>,
-        slip_from_start: bool,
     ) -> PyResult<StatesContact> {
         let mut contact = st::StatesContact::new(&states.get().states, &material.get().material).or_raise()?;
         if let Some(temperature) = &temperature {
@@ -100,7 +97,7 @@ impl StatesContact {
         if exact_states {
             contact = contact.with_exact_states().or_raise()?;
         }
-        contact = rubbing(contact, friction, estimated_friction, sheared_by.as_ref(), slip_from_start)?;
+        contact = rubbing(contact, friction, estimated_friction, sheared_by.as_ref())?;
         let keywords = dict! { py;
             "temperature": temperature,
             "linear_steps": linear_steps,
@@ -109,7 +106,6 @@ impl StatesContact {
             "friction": friction,
             "estimated_friction": estimated_friction,
             "sheared_by": sheared_by,
-            "slip_from_start": slip_from_start,
         };
         let recipe = Recipe::new(py, "", (states, material))?.with_keywords(Some(&keywords))?;
         Ok(StatesContact::of(contact, recipe))

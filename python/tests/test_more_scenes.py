@@ -48,7 +48,7 @@ def friction(draw):
         shear = vc.ShearLoad(forces[:2], motions[:2], torque=forces[2], angle=motions[2])
         try:
             report = contact.step(dt, vc.Load.force(normal), shear)
-            parts.append([report.residual, report.convolution_equivalents])
+            parts.append([report["residual"], report["convolutions"]])
         except vc.Slides as slides:
             parts.append([*slides.direction, slides.over_limit])
         parts += [contact.motion, contact.force, [contact.work["work"], contact.work["slip"]], contact.traction, contact.slip]
