@@ -222,6 +222,9 @@ impl FrictionContact {
         let side = self.response.self_influence();
         let problem = Problem { side, compliance, bound, drift, places, entered, wanted, cancelled };
         let (factor, direction) = problem.load_factor();
+        if problem.is_cancelled() {
+            return Err(Error::Cancelled { what: "a step" });
+        }
         if factor < 1.0 - ROUNDING {
             return Ok(Outcome::Slides { direction, over_limit: 1.0 / factor });
         }

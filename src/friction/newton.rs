@@ -77,12 +77,13 @@ impl Solution {
         self.begin(problem);
         let mut found = self.solve(problem, kernel, tolerance, work);
         let mut iterations = found.iterations;
-        if !found.is_solved {
+        let goes_on = |found: Outcome| !found.is_solved && !problem.is_cancelled();
+        if goes_on(found) {
             self.begin_cold(problem);
             found = self.solve(problem, kernel, tolerance, work);
             iterations += found.iterations;
         }
-        if !found.is_solved {
+        if goes_on(found) {
             found = self.find_by_motion(problem, kernel, tolerance, work);
             iterations += found.iterations;
         }
