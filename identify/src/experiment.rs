@@ -52,6 +52,11 @@ impl Experiment {
         Ok(self)
     }
 
+    /// Stiffness of the spring between base and tip \[N/m\]; infinite where the drive is the depth.
+    pub fn stiffness(&self) -> f64 {
+        self.stiffness
+    }
+
     /// The drive over time.
     pub fn protocol(&self) -> &Protocol {
         &self.protocol

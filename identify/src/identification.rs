@@ -1,9 +1,13 @@
 //! What is to be identified, and from what.
 
+use std::fmt;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
 use viscocontact::numeric::{LeastSquares, least_squares};
 
 use crate::bounds::{Bounds, inverse_gram};
-use crate::error::{Error, Result, positive, unknown};
+use crate::error::{Error, Result, positive, unknown, within};
 use crate::experiment::{Curve, Experiment};
 use crate::forward::Sample;
 use crate::model::Model;
@@ -47,12 +51,24 @@ pub struct Identification {
     pub(crate) noise: Noise,
     sigma: Option<f64>,
     pub(crate) robust: bool,
+    watch: Watch,
+}
+
+/// Whether a search goes on.
+#[derive(Clone)]
+struct Watch(Arc<dyn Fn() -> ControlFlow<()> + Send + Sync>);
+
+impl fmt::Debug for Watch {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a watch")
+    }
 }
 
 impl Identification {
     /// Identifies the parameters of a model; everything else is known until stated otherwise.
     pub fn new(model: Model) -> Identification {
-        Identification { model, chosen: Chosen::default(), noise: Noise::White, sigma: None, robust: false }
+        let watch = Watch(Arc::new(|| ControlFlow::Continue(())));
+        Identification { model, chosen: Chosen::default(), noise: Noise::White, sigma: None, robust: false, watch }
     }
 
     /// A parameter by its name, of the material or of the measurement. A list has one for each curve: of the material, for each curve of
@@ -122,13 +138,41 @@ impl Identification {
         self
     }
 
+    /// Calls `goes_on` before each step of a search, on the thread of the search: where it breaks, the call ends as a cancelled one
+    /// ([`viscocontact::Error::Cancelled`]). For progress bars and interruption, of what a [`Fit`](crate::Fit) computes later, too.
+    pub fn watched(mut self, goes_on: impl Fn() -> ControlFlow<()> + Send + Sync + 'static) -> Identification {
+        self.watch = Watch(Arc::new(goes_on));
+        self
+    }
+
+    /// Ends a call whose watch breaks.
+    pub(crate) fn goes_on(&self) -> Result<()> {
+        match (self.watch.0)() {
+            ControlFlow::Continue(()) => Ok(()),
+            ControlFlow::Break(()) => Err(viscocontact::Error::Cancelled { what: "the fit" }.into()),
+        }
+    }
+
+    /// Checks what is chosen before there is a curve: values given, the noise, and the numbers of the model.
+    ///
+    /// # Errors
+    /// As of [`Identification::fit`].
+    pub fn check(&self) -> Result<()> {
+        self.sigma.map(|sigma| positive("standard deviation of the noise", sigma)).transpose()?;
+        if let Noise::AutoregressiveWith(phi) = self.noise {
+            within("autoregressive coefficient", phi, phi.abs() < 1.0, "between -1 and 1")?;
+        }
+        self.model.check_cutoff()?;
+        Parameter::of_material(self.model, &self.chosen).map(drop)
+    }
+
     /// The model.
     pub fn model(&self) -> Model {
         self.model
     }
 
-    /// The same for one of several curves alone.
-    pub(crate) fn of_curve(&self, curve: usize) -> Identification {
+    /// The same for one of several curves alone: what [`Identification::fit_each`] fits to it.
+    pub fn of_curve(&self, curve: usize) -> Identification {
         let mut alone = self.clone();
         alone.chosen.0.iter_mut().for_each(|(_, each)| *each = each.of(curve));
         if let Noise::Covariance(matrices) = &mut alone.noise {
@@ -206,7 +250,12 @@ impl Identification {
             let is_slow = last > 0.5 * before && last <= SLOW_ENOUGH;
             at.sum() <= rounding || last <= problem.enough || is_slow || at.steps == MAX_STEPS
         };
-        let found = least_squares(start, |x| problem.residuals(x), |x| problem.slopes(x), is_enough)?;
+        let found = least_squares(
+            start,
+            |x| self.goes_on().and_then(|()| problem.residuals(x)),
+            |x| self.goes_on().and_then(|()| problem.slopes(x)),
+            is_enough,
+        )?;
         if found.steps < MAX_STEPS || found.reductions[0] <= SLOW {
             return Ok(found);
         }

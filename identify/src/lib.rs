@@ -78,7 +78,7 @@ pub use drainage::{Scaling, TimeAtSize, Verdict};
 pub use dynamic::ComplexModulus;
 pub use error::{Error, Result};
 pub use experiment::{Curve, Experiment};
-pub use fit::{Estimate, Fit, FitWarning, Variant, ranked};
+pub use fit::{Estimate, Fit, FitState, FitWarning, Variant, ranked};
 pub use forward::Sample;
 pub use identification::Identification;
 pub use model::{Law, Model, Scale};

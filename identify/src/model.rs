@@ -142,6 +142,12 @@ impl Model {
         names.iter().map(|name| (*name).to_string()).collect()
     }
 
+    /// Accepts a cutoff that is a time.
+    pub(crate) fn check_cutoff(&self) -> Result<()> {
+        let (Model::PowerLaw { cutoff } | Model::PowerLawSolid { cutoff }) = *self else { return Ok(()) };
+        within("cutoff", cutoff, cutoff > 0.0, "finite and > 0").map(drop)
+    }
+
     /// On which scale each parameter is searched for.
     pub(crate) fn scale(name: &str) -> Scale {
         if name.starts_with('E') || name.starts_with("tau") { Scale::Logarithm } else { Scale::Logit }

@@ -137,10 +137,7 @@ impl Model {
         if self.has_equilibrium() {
             within("Einf", parameters[1], parameters[1] <= parameters[0], "at most E0")?;
         }
-        if let Model::PowerLaw { cutoff } | Model::PowerLawSolid { cutoff } = *self {
-            within("cutoff", cutoff, cutoff > 0.0, "finite and > 0")?;
-        }
-        Ok(())
+        self.check_cutoff()
     }
 
     /// The exponentials of some parameters, of which all are near the first: as many for each.

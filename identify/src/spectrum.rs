@@ -79,6 +79,7 @@ impl Fit {
         let data = Col::from_fn(data.len(), |k| data[k]);
         let mut last = Col::full(data.nrows(), f64::INFINITY);
         for round in 1..=MAX_ROUNDS {
+            self.goes_on()?;
             let basis = basis(problem, &self.values, &prony)?;
             let (moduli, smoothing, sum) = smoothed(&basis, &data);
             let forces = &basis * Col::from_fn(moduli.len(), |j| moduli[j]);

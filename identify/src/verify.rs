@@ -44,6 +44,7 @@ impl Fit {
         let (times, samples) = (experiment.protocol().times(), self.samples(curve));
         let (mut force, mut before) = (Vec::with_capacity(times.len()), times[0]);
         for (&time, &drive) in times.iter().zip(experiment.protocol().drive()) {
+            self.goes_on()?;
             force.push(contact.step(time - before, experiment.load(drive - contact_point, stiffness))?.force);
             before = time;
         }

@@ -5,15 +5,18 @@ use std::sync::Arc;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use viscocontact::analytic as an;
-use viscocontact::load::LoadHistory;
+use viscocontact::load::LoadHistory as Load;
 
-use crate::arrays::mapped;
+use crate::arrays::{FROM_ZERO, check, mapped};
 use crate::errors::{Kept, OrRaise, nothing_raised};
 use crate::grid::Grid;
-use crate::loads::history;
+use crate::interrupt::free;
+use crate::loads::LoadHistory;
 use crate::materials::Material;
+use crate::recipe::Recipe;
 use crate::shapes::Shape;
 use crate::sliding::complex;
+use crate::used::Function;
 
 /// Hertz: a sphere of `radius` [m] on a body of contact `modulus` E* [Pa] under `force` [N]: "contact_radius" [m], "max_pressure" [Pa]
 /// and "approach" [m].
@@ -34,36 +37,45 @@ pub fn hertz<'py>(py: Python<'py>, radius: f64, modulus: f64, force: f64) -> PyR
 #[pyclass(frozen, module = "viscocontact")]
 pub struct GrowingSphere {
     sphere: an::GrowingSphere,
-    load: Arc<dyn LoadHistory>,
+    load: Arc<dyn Load>,
+    recipe: Recipe,
 }
 
 #[pymethods]
 impl GrowingSphere {
     #[new]
-    fn new(radius: f64, material: &Material, load: &Bound<'_, PyAny>) -> PyResult<GrowingSphere> {
-        let load = history(load)?;
-        let sphere = an::GrowingSphere::new(radius, &material.material, Arc::clone(&load));
+    fn new(radius: f64, material: Bound<'_, Material>, load: &Bound<'_, PyAny>) -> PyResult<GrowingSphere> {
+        let (py, given) = (load.py(), LoadHistory::any(load)?);
+        let load = Arc::clone(&given.get().history);
+        let sphere = an::GrowingSphere::new(radius, &material.get().material, Arc::clone(&load));
         nothing_raised(load.failure())?;
-        Ok(GrowingSphere { sphere: sphere.or_raise()?, load })
+        let recipe = Recipe::new(py, "", (radius, material, given))?;
+        Ok(GrowingSphere { sphere: sphere.or_raise()?, load, recipe })
     }
 
     /// Contact radius [m] at times [s].
     fn contact_radius<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        mapped("t", t, |t| self.sphere.contact_radius(t), || self.load.failure())
+        mapped("t", t, FROM_ZERO, |t| self.sphere.contact_radius(t), || self.load.failure())
     }
 
     /// Approach [m] at times [s].
     fn approach<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        mapped("t", t, |t| self.sphere.approach(t), || self.load.failure())
+        mapped("t", t, FROM_ZERO, |t| self.sphere.approach(t), || self.load.failure())
     }
 
     /// Pressure [Pa] at distances from the centre [m] and one time [s].
     fn pressure<'py>(&self, r: &Bound<'py, PyAny>, t: f64) -> PyResult<Bound<'py, PyAny>> {
-        mapped("r", r, |r| self.sphere.pressure(r, t), || self.load.failure())
+        check("t", t, FROM_ZERO)?;
+        mapped("r", r, FROM_ZERO, |r| self.sphere.pressure(r, t), || self.load.failure())
     }
 }
 
+made_by_calls!(GrowingSphere);
+
 /// Hertz: a paraboloid of `radii` of curvature along x1 and x2 [m]: "semi_axes" of the contact [m], "max_pressure" [Pa] and "approach" [m].
+///
+/// >>> round(hertz_ellipse((10e-3, 10e-3), 4e6, 1.0)["semi_axes"][0], 6)     # as hertz
+/// 0.001233
 #[pyfunction]
 pub fn hertz_ellipse<'py>(py: Python<'py>, radii: [f64; 2], modulus: f64, force: f64) -> PyResult<Bound<'py, PyDict>> {
     let of = an::HertzEllipse::new(radii, modulus, force).or_raise()?;
@@ -71,6 +83,9 @@ pub fn hertz_ellipse<'py>(py: Python<'py>, radii: [f64; 2], modulus: f64, force:
 }
 
 /// A rigid flat circular punch of `radius` [m] under `force` [N] at the point (`eccentricity`, 0) [m]: "approach" [m] and "tilt" [rad].
+///
+/// >>> rigid_punch(1e-3, 1e6, 1.0)["approach"]
+/// 0.0005
 #[pyfunction]
 #[pyo3(signature = (radius, modulus, force, eccentricity=0.0))]
 pub fn rigid_punch<'py>(
@@ -87,6 +102,9 @@ pub fn rigid_punch<'py>(
 /// Hunter: a cylinder of `radius` [m] that rolls or slides on a body of one retardation time under `force` on a unit of its length [N/m]:
 /// "half_width" and "center" of the contact [m], and "friction". `compliances` are C₀ at once and C₁ delayed [1/Pa], `reach` the velocity
 /// times the retardation time [m].
+///
+/// >>> 0 < rolling_cylinder(10e-3, (1e-7, 1e-7), 100.0, 1e-3)["friction"] < 0.1
+/// True
 #[pyfunction]
 pub fn rolling_cylinder<'py>(
     py: Python<'py>,
@@ -110,31 +128,38 @@ macro_rules! sticking {
     )*) => {$(
         $(#[$about])*
         #[pyclass(frozen, module = "viscocontact")]
-        pub struct $class(an::$class);
+        pub struct $class {
+            of: an::$class,
+            recipe: Recipe,
+        }
 
         #[pymethods]
         impl $class {
             #[new]
-            fn new($($given: f64),*) -> PyResult<$class> {
-                an::$class::new($($given),*).or_raise().map($class)
+            fn new(py: Python<'_>, $($given: f64),*) -> PyResult<$class> {
+                let of = an::$class::new($($given),*).or_raise()?;
+                Ok($class { of, recipe: Recipe::new(py, "", ($($given,)*))? })
             }
 
             $(
                 $(#[$doc])*
                 #[getter]
                 fn $name(&self) -> $type {
-                    let $of = &self.0;
+                    let $of = &self.of;
                     $value
                 }
             )*
 
             $(
                 #[$told]
-                fn $function(&self, $at: f64) -> $result {
-                    self.0.$function($at).into()
+                fn $function(&self, $at: f64) -> PyResult<$result> {
+                    check(stringify!($at), $at, FROM_ZERO)?;
+                    Ok(self.of.$function($at).into())
                 }
             )?
         }
+
+        made_by_calls!($class);
     )*};
 }
 
@@ -147,7 +172,7 @@ sticking! {
     /// >>> abs(force / gel.pull_off_force - 1) < 1e-12 and approach < 0
     /// True
     Jkr(radius, modulus, work) {
-        /// The least force [N].
+        /// The least force [N]: negative, a pull.
         pull_off_force: f64 = |of| of.pull_off_force();
         /// The contact radius at the least force [m].
         radius_at_pull_off: f64 = |of| of.radius_at_pull_off();
@@ -161,8 +186,11 @@ sticking! {
 
     /// Derjaguin, Muller and Toporov: a sphere of `radius` [m] that sticks to a stiff body of contact `modulus` E* [Pa] by an attraction of long
     /// range, with the `work` of separation [J/m²].
+    ///
+    /// >>> round(Dmt(1e-3, 1e9, 0.05).pull_off_force * 1e6, 2)     # µN: negative, a pull
+    /// -314.16
     Dmt(radius, modulus, work) {
-        /// The least force [N].
+        /// The least force [N]: negative, a pull.
         pull_off_force: f64 = |of| of.pull_off_force();
     }
     [
@@ -172,10 +200,14 @@ sticking! {
 
     /// Maugis: a sphere of `radius` [m] that sticks to a body of contact `modulus` E* [Pa] by a constant `traction` [Pa], with the `work` of
     /// separation [J/m²].
+    ///
+    /// >>> sphere = MaugisDugdale(1e-3, 1e9, 0.05, 1e7)
+    /// >>> Dmt(1e-3, 1e9, 0.05).pull_off_force < sphere.pull_off[0] < Jkr(1e-3, 1e9, 0.05).pull_off_force
+    /// True
     MaugisDugdale(radius, modulus, work, traction) {
         /// Maugis' parameter λ: `Dmt` is 0, `Jkr` infinity.
         parameter: f64 = |of| of.parameter();
-        /// The least force [N], and the contact radius there [m].
+        /// The least force [N], negative, a pull; and the contact radius there [m].
         pull_off: (f64, f64) = |of| of.pull_off().into();
     }
     [
@@ -185,8 +217,12 @@ sticking! {
 
     /// Kendall: a rigid flat circular punch of `radius` [m] that sticks to a body of contact `modulus` E* [Pa] with the `work` of separation
     /// [J/m²].
+    ///
+    /// >>> punch = AdhesivePunch(1e-3, 1e6, 0.05)
+    /// >>> punch.pull_off_force < 0 and punch.approach_at_pull_off < 0
+    /// True
     AdhesivePunch(radius, modulus, work) {
-        /// The least force [N].
+        /// The least force [N]: negative, a pull.
         pull_off_force: f64 = |of| of.pull_off_force();
         /// The approach at the least force [m].
         approach_at_pull_off: f64 = |of| of.approach_at_pull_off();
@@ -194,8 +230,12 @@ sticking! {
 
     /// Barquins: a cylinder of `radius` [m] that sticks to a body of contact `modulus` E* [Pa] in plane strain, with the `work` of separation
     /// [J/m²].
+    ///
+    /// >>> roll = AdhesiveCylinder(1e-2, 1e6, 0.05)
+    /// >>> abs(roll.force(roll.width_at_pull_off) / roll.pull_off_force - 1) < 1e-12
+    /// True
     AdhesiveCylinder(radius, modulus, work) {
-        /// The least force on a unit of length [N/m].
+        /// The least force on a unit of length [N/m]: negative, a pull.
         pull_off_force: f64 = |of| of.pull_off_force();
         /// The half-width of the contact at the least force [m].
         width_at_pull_off: f64 = |of| of.width_at_pull_off();
@@ -207,6 +247,10 @@ sticking! {
 
     /// Johnson: a wavy surface of `amplitude` and `wavelength` [m] that sticks to a body of contact `modulus` E* [Pa] in plane strain, with the
     /// `work` of separation [J/m²].
+    ///
+    /// >>> wave = AdhesiveWave(1e-6, 1e-4, 1e6, 1e-4)
+    /// >>> 0 < wave.strength < 0.57 and wave.pull_off_pressure < 0
+    /// True
     AdhesiveWave(amplitude, wavelength, modulus, work) {
         /// The strength α of the attraction: from 0.57 on the surfaces jump into full contact without load.
         strength: f64 = |of| of.strength();
@@ -223,28 +267,45 @@ sticking! {
 
 /// The edge of a contact that opens on a creeping body (Schapery, Greenwood) under an attraction of `work` [J/m²] and `range` [m].
 ///
-/// `zone` is the length of the zone of the attraction over E*ρ²/w: π/4 of a constant traction, about 1.4 of an exponential one.
+/// `zone` is the length of the zone of the attraction over E*ρ²/w: π/4 of a constant traction, about 1.4 of an exponential one. The theory holds
+/// while the bulk of the body is relaxed: with the relaxation time τ, for speeds V τ ≤ 0.03 R^⅓ (w/E*)^⅔ of a sphere of radius R (4 %; 7 % at 0.1).
+///
+/// >>> edge = OpeningEdge(Material(Rheology.relaxing(4e6, 1e6, 0.1)), 0.05, 1e-7)
+/// >>> edge.work(1e-9) < edge.work(1e-4) < 4.1 * 0.05      # from w to w times the ratio of the moduli
+/// True
 #[pyclass(frozen, module = "viscocontact")]
-pub struct OpeningEdge(an::OpeningEdge);
+pub struct OpeningEdge {
+    edge: an::OpeningEdge,
+    recipe: Recipe,
+}
 
 #[pymethods]
 impl OpeningEdge {
     #[new]
     #[pyo3(signature = (material, work, range, *, zone=None))]
-    fn new(material: &Material, work: f64, range: f64, zone: Option<f64>) -> PyResult<OpeningEdge> {
-        let edge = an::OpeningEdge::new(&material.material, work, range).or_raise()?;
-        zone.map_or(Ok(edge.clone()), |zone| edge.with_zone(zone)).or_raise().map(OpeningEdge)
+    fn new(
+        py: Python<'_>,
+        material: Bound<'_, Material>,
+        work: f64,
+        range: f64,
+        zone: Option<f64>,
+    ) -> PyResult<OpeningEdge> {
+        let edge = an::OpeningEdge::new(&material.get().material, work, range).or_raise()?;
+        let edge = zone.map_or(Ok(edge.clone()), |zone| edge.with_zone(zone)).or_raise()?;
+        let keywords = dict! { py; "zone": zone };
+        let recipe = Recipe::new(py, "", (material, work, range))?.with_keywords(Some(&keywords))?;
+        Ok(OpeningEdge { edge, recipe })
     }
 
     /// The work that opens a unit of area [J/m²] at a speed of the edge [m/s].
     fn work(&self, speed: f64) -> PyResult<f64> {
-        self.0.work(speed).or_raise()
+        self.edge.work(speed).or_raise()
     }
 
-    /// A sphere of `radius` [m] drawn back from an `approach` [m] at a `speed` [m/s], at the greatest pull: "force" [N], "approach" and
-    /// "contact_radius" [m], "edge_speed" [m/s] and "work" [J/m²].
+    /// A sphere of `radius` [m] drawn back from an `approach` [m] at a `speed` [m/s], at the maximum pull: a dict of "force" [N], "approach" and
+    /// "contact_radius" [m], "edge_speed" [m/s] and "work" [J/m²]. At speeds beyond the range of the theory the force is too large.
     fn pull_off<'py>(&self, py: Python<'py>, radius: f64, approach: f64, speed: f64) -> PyResult<Bound<'py, PyDict>> {
-        let of = py.detach(|| self.0.pull_off(radius, approach, speed)).or_raise()?;
+        let of = free(py, || self.edge.pull_off(radius, approach, speed)).or_raise()?;
         Ok(dict! { py;
             "force": of.force,
             "approach": of.approach,
@@ -255,7 +316,9 @@ impl OpeningEdge {
     }
 }
 
-getters! {OpeningEdge, of:
+made_by_calls!(OpeningEdge);
+
+getters! {OpeningEdge.edge, of:
     /// The length E*ρ²/w of the relaxed body [m].
     length: f64 = of.length();
 }
@@ -275,12 +338,21 @@ getters! {OpeningEdge, of:
 ///     [m/s]
 /// gamma : float
 ///     The number γ of the theory, 0 to 1.
+///
+/// Returns (coefficient of friction, share of the surface in contact).
+///
+/// >>> grid = Grid(32, 1e-3)
+/// >>> road = HeightMap.rough(grid, 0.5e-3, 0.1e-3, rms_slope=0.1)
+/// >>> rubber = Rheology.prony(1e6, [(1e7, 1e-4)])
+/// >>> friction, share = persson_friction(grid, road, lambda w: 4 * rubber.complex_modulus(w), 1e5, (1.0, 0.0), 0.5)
+/// >>> 0 < friction < 1 and 0 < share < 1
+/// True
 #[pyfunction]
 pub fn persson_friction(
     py: Python<'_>,
     grid: &Grid,
     surface: &Shape,
-    modulus: Py<PyAny>,
+    modulus: Function,
     pressure: f64,
     velocity: &Bound<'_, PyAny>,
     gamma: f64,
@@ -289,7 +361,7 @@ pub fn persson_friction(
     let surface = Arc::clone(&surface.geometry);
     let kept = Kept::default();
     let modulus = |omega| complex(&modulus, omega, &kept);
-    let theory = py.detach(|| an::PerssonFriction::new(&grid.0, &*surface, modulus, pressure, velocity, gamma));
+    let theory = free(py, || an::PerssonFriction::new(&grid.0, &*surface, modulus, pressure, velocity, gamma));
     let theory = kept.raise_or(theory.or_raise())?;
     Ok((theory.friction, theory.contact_share))
 }

@@ -8,6 +8,7 @@ use pyo3::types::{PyDict, PyList};
 use viscocontact::UserError;
 
 use crate::errors::nothing_raised;
+use crate::interrupt::free;
 
 /// Any array of Python.
 pub type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
@@ -136,22 +137,43 @@ pub fn columns<'py>(
     Ok(all)
 }
 
+/// Where a function is defined: from a number on.
+#[derive(Clone, Copy)]
+pub struct Domain(f64);
+
+pub const FROM_ZERO: Domain = Domain(0.0);
+pub const ALL: Domain = Domain(f64::NEG_INFINITY);
+
+/// Refuses a place at which a function is not defined. NaN is passed on.
+pub fn check(name: &str, at: f64, Domain(first): Domain) -> PyResult<()> {
+    if at >= first || at.is_nan() {
+        return Ok(());
+    }
+    Err(PyValueError::new_err(format!(
+        "{name} = {at} is not allowed: it must be at least {first}, or NaN, which stays NaN"
+    )))
+}
+
 /// A function of one number, at a number or at each value of an array: a number or an array of the same shape. Where functions of the user have a
 /// part in it, `failure` is what keeps their error: the NaN that stands for a value is none.
 pub fn mapped<'py>(
     name: &str,
     at: &Bound<'py, PyAny>,
+    domain: Domain,
     of: impl Fn(f64) -> f64 + Sync,
     failure: impl FnOnce() -> Option<UserError>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let py = at.py();
+    let of = |at: f64| if at.is_nan() { at } else { of(at) };
     if let Some(number) = number(at) {
+        check(name, number, domain)?;
         let value = of(number);
         nothing_raised(failure())?;
         return Ok(value.into_pyobject(py)?.into_any());
     }
     let (values, shape) = values(name, at)?;
-    let values = py.detach(|| values.into_iter().map(&of).collect());
+    values.iter().try_for_each(|&at| check(name, at, domain))?;
+    let values = free(py, || values.into_iter().map(&of).collect());
     nothing_raised(failure())?;
     Ok(to_array(py, values, &shape)?.into_any())
 }

@@ -5,13 +5,14 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 use viscocontact::UserError;
 use viscocontact::adhesion::{self as ad, Attraction as Law};
 
-use crate::arrays::mapped;
+use crate::arrays::{FROM_ZERO, mapped};
 use crate::errors::{OrRaise, no_violation, nothing_raised};
+use crate::interrupt::free;
 use crate::recipe::Recipe;
+use crate::used::Function;
 
 /// A law of the attraction between surfaces: traction [Pa] over gap [m].
 ///
@@ -26,88 +27,62 @@ pub struct Attraction {
     recipe: Recipe,
 }
 
-/// What is given with the work: exactly one of range and greatest traction.
-fn one_of<T>(
-    range: Option<f64>,
-    greatest: Option<f64>,
-    by_range: impl FnOnce(f64) -> viscocontact::Result<T>,
-    by_traction: impl FnOnce(f64) -> viscocontact::Result<T>,
-) -> PyResult<T> {
-    match (range, greatest) {
-        (Some(range), None) => by_range(range).or_raise(),
-        (None, Some(greatest)) => by_traction(greatest).or_raise(),
-        _ => Err(PyTypeError::new_err("give range or greatest, one of them")),
-    }
+/// Laws by their work, and their range or maximum traction.
+macro_rules! laws {
+    ($($(#[$doc:meta])* $name:ident($($more:ident),*) = $law:ident;)*) => {
+        #[pymethods]
+        impl Attraction {
+            $(
+                $(#[$doc])*
+                #[staticmethod]
+                #[pyo3(signature = (work, range=None, *, greatest=None $(, $more=None)*))]
+                fn $name(
+                    py: Python<'_>,
+                    work: f64,
+                    range: Option<f64>,
+                    greatest: Option<f64>,
+                    $($more: Option<f64>),*
+                ) -> PyResult<Attraction> {
+                    let law = match (range, greatest) {
+                        (Some(range), None) => ad::$law::new(work, range),
+                        (None, Some(greatest)) => ad::$law::of_traction(work, greatest),
+                        _ => return Err(PyTypeError::new_err("give range or greatest, one of them")),
+                    };
+                    $(let law = law.and_then(|law| $more.map_or(Ok(law), |width| law.with_width(width)));)*
+                    let keywords = dict! { py; "range": range, "greatest": greatest };
+                    $(keywords.set_item(stringify!($more), $more)?;)*
+                    let recipe = Recipe::new(py, stringify!($name), (work,))?.with_keywords(Some(&keywords))?;
+                    Ok(Attraction { law: Arc::new(law.or_raise()?), recipe })
+                }
+            )*
+        }
+    };
 }
 
-fn made(
-    py: Python<'_>,
-    maker: &'static str,
-    work: f64,
-    keywords: &[(&str, Option<f64>)],
-    law: Arc<dyn Law>,
-) -> PyResult<Attraction> {
-    let given = PyDict::new(py);
-    for (name, value) in keywords {
-        if let Some(value) = value {
-            given.set_item(name, value)?;
-        }
-    }
-    Ok(Attraction { law, recipe: Recipe::new(py, maker, (work,))?.with_keywords(Some(&given))? })
+laws! {
+    /// An attraction that decays exponentially with the gap: (w/ρ) exp(−h/ρ).
+    exponential() = ExponentialAttraction;
+
+    /// The attraction of half-spaces whose molecules attract each other with the sixth power of their distance.
+    van_der_waals() = VanDerWaals;
+
+    /// An attraction that falls linearly with the gap, to zero at twice the range.
+    linear_softening() = LinearSoftening;
+
+    /// The constant attraction of Dugdale and Maugis up to the range, with an end of `width` over the range.
+    dugdale(width) = Dugdale;
 }
 
 #[pymethods]
 impl Attraction {
-    /// An attraction that decays exponentially with the gap: (w/ρ) exp(−h/ρ).
-    #[staticmethod]
-    #[pyo3(signature = (work, range=None, *, greatest=None))]
-    fn exponential(py: Python<'_>, work: f64, range: Option<f64>, greatest: Option<f64>) -> PyResult<Attraction> {
-        use ad::ExponentialAttraction as L;
-        let law = one_of(range, greatest, |range| L::new(work, range), |greatest| L::of_traction(work, greatest))?;
-        made(py, "exponential", work, &[("range", range), ("greatest", greatest)], Arc::new(law))
-    }
-
-    /// The attraction of half-spaces whose molecules attract each other with the sixth power of their distance.
-    #[staticmethod]
-    #[pyo3(signature = (work, range=None, *, greatest=None))]
-    fn van_der_waals(py: Python<'_>, work: f64, range: Option<f64>, greatest: Option<f64>) -> PyResult<Attraction> {
-        use ad::VanDerWaals as L;
-        let law = one_of(range, greatest, |range| L::new(work, range), |greatest| L::of_traction(work, greatest))?;
-        made(py, "van_der_waals", work, &[("range", range), ("greatest", greatest)], Arc::new(law))
-    }
-
-    /// An attraction that falls linearly with the gap, to zero at twice the range.
-    #[staticmethod]
-    #[pyo3(signature = (work, range=None, *, greatest=None))]
-    fn linear_softening(py: Python<'_>, work: f64, range: Option<f64>, greatest: Option<f64>) -> PyResult<Attraction> {
-        use ad::LinearSoftening as L;
-        let law = one_of(range, greatest, |range| L::new(work, range), |greatest| L::of_traction(work, greatest))?;
-        made(py, "linear_softening", work, &[("range", range), ("greatest", greatest)], Arc::new(law))
-    }
-
-    /// The constant attraction of Dugdale and Maugis up to the range, with an end of `width` over the range.
-    #[staticmethod]
-    #[pyo3(signature = (work, range=None, *, greatest=None, width=None))]
-    fn dugdale(
-        py: Python<'_>,
-        work: f64,
-        range: Option<f64>,
-        greatest: Option<f64>,
-        width: Option<f64>,
-    ) -> PyResult<Attraction> {
-        use ad::Dugdale as L;
-        let law = one_of(range, greatest, |range| L::new(work, range), |greatest| L::of_traction(work, greatest))?;
-        let law = width.map_or(Ok(law), |width| law.with_width(width)).or_raise()?;
-        made(py, "dugdale", work, &[("range", range), ("greatest", greatest), ("width", width)], Arc::new(law))
-    }
-
     /// Your own law: functions of the gap [m], 0 or more: the traction [Pa], which never grows with the gap, and the energy [J/m²], its
     /// integral from the gap to infinity.
     ///
     /// An exception of a function comes out of the step that needed it.
     #[staticmethod]
-    fn function(py: Python<'_>, traction: Py<PyAny>, energy: Py<PyAny>) -> PyResult<Attraction> {
-        let recipe = Recipe::new(py, "function", (traction.clone_ref(py), energy.clone_ref(py)))?;
+    fn function(py: Python<'_>, traction: Function, energy: Function) -> PyResult<Attraction> {
+        let recipe = Recipe::new(py, "function", (traction.clone(), energy.clone()))?
+            .calling([traction.clone(), energy.clone()]);
         let law = OwnLaw { traction, energy, failure: Mutex::default() };
         let _ = (law.traction(0.0), law.energy(0.0));
         nothing_raised(law.failure())?;
@@ -117,18 +92,18 @@ impl Attraction {
     /// Checks the laws of attractions: a traction that falls with the gap, and the energy its integral. Raises ValueError with the first
     /// violation.
     fn check(&self, py: Python<'_>) -> PyResult<()> {
-        let verdict = py.detach(|| ad::laws::all(&*self.law));
+        let verdict = free(py, || ad::laws::all(&*self.law));
         no_violation(self.law.failure(), verdict)
     }
 
     /// Traction [Pa] at gaps [m].
     fn traction<'py>(&self, gap: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        mapped("gap", gap, |gap| self.law.traction(gap), || self.law.failure())
+        mapped("gap", gap, FROM_ZERO, |gap| self.law.traction(gap), || self.law.failure())
     }
 
     /// Energy [J/m²] that opens the gap [m] to infinity.
     fn energy<'py>(&self, gap: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        mapped("gap", gap, |gap| self.law.energy(gap), || self.law.failure())
+        mapped("gap", gap, FROM_ZERO, |gap| self.law.energy(gap), || self.law.failure())
     }
 
     /// Tabor's number of a sphere of `radius` [m] on a body of contact `modulus` E* [Pa].
@@ -156,14 +131,14 @@ made_by_calls!(Attraction);
 
 /// A law of two functions in Python.
 struct OwnLaw {
-    traction: Py<PyAny>,
-    energy: Py<PyAny>,
+    traction: Function,
+    energy: Function,
     failure: Mutex<Option<UserError>>,
 }
 
 impl OwnLaw {
-    fn call(&self, function: &Py<PyAny>, gap: f64) -> f64 {
-        Python::attach(|py| function.call1(py, (gap,))?.extract(py)).unwrap_or_else(|error: PyErr| {
+    fn call(&self, function: &Function, gap: f64) -> f64 {
+        function.call((gap,)).unwrap_or_else(|error: PyErr| {
             *self.failure.lock().unwrap_or_else(PoisonError::into_inner) =
                 Some(UserError::new("the attraction", error));
             f64::NAN

@@ -3,23 +3,25 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use pyo3::gc::PyVisit;
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict, PyTuple, PyType};
+use pyo3::types::{PyBytes, PyDict, PyList, PyTuple, PyType};
 
 use crate::contact::ViscoelasticContact;
 use crate::errors::OrRaise;
 use crate::held::{Options, saved_every, stepping, times};
+use crate::interrupt::free;
 use crate::loads::histories;
 use crate::run::Run;
-use crate::scratch::{bytes_of, file_of};
 use crate::states_contact::StatesContact;
+use crate::used::{Function, Shared, Taken, Traversed};
 
 /// How an object is made again, and the bytes of its state.
 type Pickled<'py> =
     (Bound<'py, PyAny>, (Bound<'py, PyType>, &'static str, Py<PyTuple>, Option<Py<PyDict>>), Bound<'py, PyBytes>);
 
 macro_rules! both {
-    ($contact:ident) => {
+    ($contact:ident, $bytes:ident => $saved:expr) => {
         #[pymethods]
         impl $contact {
             /// Follows a load to the time `until` [s]: an iterator over the reports of the steps.
@@ -30,7 +32,8 @@ macro_rules! both {
             ///     In space of several bodies, a sequence with one of these for each.
             /// until : float
             /// tolerance : float, default 1e-3
-            ///     Steps are as long as their estimated error in time allows.
+            ///     Steps are as long as their estimated error in time allows, and each contact problem is solved as accurately as this needs: less accurately
+            ///     than by the contact's own `tolerance`, which a run with `dt` takes.
             /// dt : float, optional
             ///     Equal steps of this length instead [s].
             /// stop_at : times, optional
@@ -63,56 +66,68 @@ macro_rules! both {
                 stop_at: Option<Bound<'_, PyAny>>,
                 sample_at: Option<Bound<'_, PyAny>>,
                 fields_to: Option<f64>,
-                progress: Option<Py<PyAny>>,
+                progress: Option<Function>,
                 autosave: Option<(PathBuf, f64)>,
             ) -> PyResult<Run> {
                 let (stop_at, sample_at) = (times("stop_at", stop_at)?, times("sample_at", sample_at)?);
                 let (stepping, autosave) = (stepping(dt, tolerance)?, saved_every(autosave)?);
-                let options =
-                    Options { histories: histories(load)?, stepping, until, stop_at, sample_at, progress, fields_to, autosave };
-                let mut contact = slf.borrow_mut();
+                let (sampled, loads) = (sample_at.is_some(), histories(load)?);
+                let histories = loads.iter().map(|load| Arc::clone(&load.get().history)).collect();
+                let options = Options { histories, stepping, until, stop_at, sample_at, fields_to, autosave };
+                let mut contact = Taken::try_from(&slf)?;
                 let cancel = Arc::clone(&contact.cancel);
-                let run = contact.held.follow(&options, cancel)?;
-                Ok(Run::of(slf.clone().unbind().into(), run, options))
+                let run = contact.held.follow(options, PyList::new(slf.py(), loads)?.into_any().unbind(), cancel)?;
+                Ok(Run::of(slf.clone().unbind().into(), run, sampled, progress))
             }
 
-            fn __copy__(&self, py: Python<'_>) -> PyResult<$contact> {
-                let contact = self.get()?;
-                Ok($contact::of(py.detach(|| contact.clone()), self.recipe.again(py)))
+            fn __copy__(slf: Shared<'_, Self>, py: Python<'_>) -> PyResult<$contact> {
+                let contact = slf.get()?;
+                Ok($contact::of(free(py, || contact.clone()), slf.recipe.again(py)))
             }
 
-            fn __deepcopy__(&self, py: Python<'_>, _memo: Bound<'_, PyAny>) -> PyResult<$contact> {
-                self.__copy__(py)
+            fn __deepcopy__(slf: Shared<'_, Self>, py: Python<'_>, _memo: Bound<'_, PyAny>) -> PyResult<$contact> {
+                Self::__copy__(slf, py)
             }
 
             /// Saves the whole state to a file, from which a contact that is built like this one continues by `resume`.
-            fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-                let contact = self.get()?;
-                py.detach(|| contact.save(path)).or_raise()
+            fn save(slf: Shared<'_, Self>, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+                let contact = slf.get()?;
+                free(py, || contact.save(path)).or_raise()
             }
 
             /// Puts a saved state in the place of this one; the following steps are the same, bit by bit.
             ///
             /// Raises OSError if the file cannot be read, is damaged, or is of another scene.
-            fn resume(&mut self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-                let contact = self.held.free()?;
-                py.detach(|| contact.resume(path)).or_raise()
+            fn resume(mut slf: Taken<'_, Self>, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+                let contact = slf.held.free()?;
+                free(py, || contact.resume(path)).or_raise()
             }
 
             fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Pickled<'py>> {
-                let of = slf.borrow();
+                let of = Shared::try_from(slf)?;
                 let (again, arguments) = of.recipe.reduce(slf.get_type())?;
                 let contact = of.get()?;
-                Ok((again, arguments, bytes_of(slf.py(), "checkpoint", |file| contact.save(file))?))
+                let $bytes = free(slf.py(), || contact.to_bytes());
+                Ok((again, arguments, PyBytes::new(slf.py(), &$saved)))
             }
 
-            fn __setstate__(&mut self, py: Python<'_>, state: &Bound<'_, PyBytes>) -> PyResult<()> {
-                let (file, contact) = (file_of(state)?, self.held.free()?);
-                py.detach(|| contact.resume(&file.0)).or_raise()
+            fn __traverse__(&self, visit: PyVisit<'_>) -> Traversed {
+                self.recipe.traverse(&visit)?;
+                self.held.traverse(&visit)
+            }
+
+            /// Ends the run, whose functions may refer to the contact.
+            fn __clear__(&mut self) {
+                let _ = self.held.free();
+            }
+
+            fn __setstate__(mut slf: Taken<'_, Self>, py: Python<'_>, state: &Bound<'_, PyBytes>) -> PyResult<()> {
+                let (bytes, contact) = (state.as_bytes(), slf.held.free()?);
+                free(py, || contact.resume_bytes(bytes)).or_raise()
             }
         }
     };
 }
 
-both!(ViscoelasticContact);
-both!(StatesContact);
+both!(ViscoelasticContact, bytes => bytes.or_raise()?);
+both!(StatesContact, bytes => bytes);

@@ -12,13 +12,14 @@ use viscocontact::{self as vc, motion};
 use crate::errors::OrRaise;
 use crate::grid::Grid;
 use crate::held::Held;
-use crate::interrupt::interruptible;
+use crate::interrupt::{free, interruptible};
 use crate::loads::{Load, loads};
 use crate::materials::Material;
-use crate::recipe::Recipe;
+use crate::recipe::{Recipe, digits};
 use crate::reports::StepReport;
 use crate::scene::builder;
 use crate::shapes::{Shape, geometries};
+use crate::used::{Function, Shared, Taken};
 
 /// Steps on more cells, ...
 const MANY_CELLS: usize = 1 << 17;
@@ -43,7 +44,8 @@ const LONG: Duration = Duration::from_millis(10);
 /// times : (float, float) or (load, float), optional
 ///     The loading times over which the material is needed [s]: from the first to the last, or those of a load to the time `until`.
 /// tolerance : float, default 1e-6
-///     Of the contact problem, relative to the displacement.
+///     Of the contact problem, relative to the displacement. Runs (`follow`) solve it no more accurately than their own tolerance in time needs:
+///     `StepReport.residual` has what was reached.
 /// max_iterations : int, default 1000
 /// time_rule : "exponential" (default) or "exponential_linear"
 /// edge : "refuse" (default) or "allow"
@@ -67,14 +69,20 @@ const LONG: Duration = Duration::from_millis(10);
 #[pyclass(module = "viscocontact")]
 pub struct ViscoelasticContact {
     pub held: Held<vc::ViscoelasticContact>,
-    pub recipe: Recipe,
+    /// Shared with the functions of its run alone.
+    pub recipe: Arc<Recipe>,
     pub cancel: Arc<AtomicBool>,
     last: Duration,
 }
 
 impl ViscoelasticContact {
     pub fn of(contact: vc::ViscoelasticContact, recipe: Recipe) -> ViscoelasticContact {
-        ViscoelasticContact { held: Held::Free(contact), recipe, cancel: Arc::default(), last: Duration::ZERO }
+        ViscoelasticContact {
+            held: Held::Free(contact),
+            recipe: Arc::new(recipe),
+            cancel: Arc::default(),
+            last: Duration::ZERO,
+        }
     }
 
     pub fn get(&self) -> PyResult<&vc::ViscoelasticContact> {
@@ -95,7 +103,7 @@ impl ViscoelasticContact {
     /// Takes the next step of its run.
     pub fn next(&mut self, py: Python<'_>, run: u64) -> PyResult<Option<ct::StepReport>> {
         let ViscoelasticContact { held, cancel, last, .. } = self;
-        let (run, _) = held.run(run)?;
+        let run = held.run(run)?;
         let cells = run.contact().grid().len();
         timed(last, cells, |slow| interruptible(py, slow, cancel, || run.next_step()))
     }
@@ -124,7 +132,7 @@ impl ViscoelasticContact {
         options: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<ViscoelasticContact> {
         let builder = builder(grid.get(), &geometry, material.get(), options)?;
-        let contact = py.detach(|| builder.build()).or_raise()?;
+        let contact = free(py, || builder.build()).or_raise()?;
         let recipe = Recipe::new(py, "", (grid, geometry, material))?.with_keywords(options)?;
         Ok(ViscoelasticContact::of(contact, recipe))
     }
@@ -142,21 +150,21 @@ impl ViscoelasticContact {
     /// ValueError: ...
     /// >>> contact.time, contact.force
     /// (0.0, 0.0)
-    fn step(&mut self, py: Python<'_>, dt: f64, load: &Bound<'_, PyAny>) -> PyResult<StepReport> {
+    fn step(mut slf: Taken<'_, Self>, py: Python<'_>, dt: f64, load: &Bound<'_, PyAny>) -> PyResult<StepReport> {
         let loads = loads(load)?;
-        self.compute(py, |contact, cancel| contact.step_unless(cancel, dt, &loads)).map(StepReport)
+        slf.compute(py, |contact, cancel| contact.step_unless(cancel, dt, &loads)).map(StepReport)
     }
 
     /// A step in which the indenter and the grid move over the bodies by whole cells along x1 and x2. Needs frame="indenter". Ctrl-C waits for its end.
     fn step_over(
-        &mut self,
+        mut slf: Taken<'_, Self>,
         py: Python<'_>,
         cells: [isize; 2],
         dt: f64,
         load: &Bound<'_, PyAny>,
     ) -> PyResult<StepReport> {
         let loads = loads(load)?;
-        self.compute(py, |contact, _| contact.step_over(cells, dt, &loads)).map(StepReport)
+        slf.compute(py, |contact, _| contact.step_over(cells, dt, &loads)).map(StepReport)
     }
 
     /// A step at whose end `shape` is where `position(t)` [m] puts it, a function of time that returns (x1, x2), or a pair of start
@@ -166,7 +174,7 @@ impl ViscoelasticContact {
     #[pyo3(signature = (shape, position, dt, load, *, track=None))]
     #[allow(clippy::type_complexity)]
     fn step_along(
-        &mut self,
+        mut slf: Taken<'_, Self>,
         py: Python<'_>,
         shape: &Shape,
         position: Bound<'_, PyAny>,
@@ -176,9 +184,8 @@ impl ViscoelasticContact {
     ) -> PyResult<(StepReport, ([f64; 2], [f64; 2], f64))> {
         let shape = Arc::clone(&shape.geometry);
         let mut travel = if position.is_callable() {
-            let function = position.unbind();
-            let at = move |t: f64| Python::attach(|py| function.call1(py, (t,))?.extract::<[f64; 2]>(py));
-            motion::Travel::new(shape, motion::FnPath::fallible(at))
+            let function: Function = position.extract()?;
+            motion::Travel::new(shape, motion::FnPath::fallible(move |t: f64| function.call::<[f64; 2]>((t,))))
         } else {
             let (start, velocity) = position.extract()?;
             motion::Travel::new(shape, motion::Straight::new(start, velocity).or_raise()?)
@@ -187,16 +194,16 @@ impl ViscoelasticContact {
             travel = travel.over(Arc::clone(&track.geometry));
         }
         let load = load.load;
-        let report = self.compute(py, |contact, _| contact.step_along(&travel, dt, load))?;
+        let report = slf.compute(py, |contact, _| contact.step_along(&travel, dt, load))?;
         Ok((StepReport(report.step), (report.position, report.lateral_force, report.power)))
     }
 
     /// Replaces the shapes between two steps, moved or changed: a shape, an array of gaps, or a sequence with one for each body.
-    fn set_geometry(&mut self, py: Python<'_>, geometry: &Bound<'_, PyAny>) -> PyResult<()> {
-        let contact = self.held.free()?;
+    fn set_geometry(mut slf: Taken<'_, Self>, py: Python<'_>, geometry: &Bound<'_, PyAny>) -> PyResult<()> {
+        let contact = slf.held.free()?;
         let shapes = geometries(contact.grid(), geometry)?;
         let shapes: Vec<&dyn vc::geometry::Geometry> = shapes.iter().map(|shape| &**shape as _).collect();
-        py.detach(|| contact.set_geometries(&shapes)).or_raise()
+        free(py, || contact.set_geometries(&shapes)).or_raise()
     }
 
     /// The state as it is, to come back to by `restore`.
@@ -208,30 +215,35 @@ impl ViscoelasticContact {
     /// >>> contact.restore(before)
     /// >>> contact.time
     /// 0.0
-    fn snapshot(&self) -> PyResult<Snapshot> {
-        self.get().map(|contact| Snapshot(contact.snapshot()))
+    fn snapshot(slf: Shared<'_, Self>) -> PyResult<Snapshot> {
+        slf.get().map(|contact| Snapshot(contact.snapshot()))
     }
 
     /// Goes back to a state. Raises ValueError if the snapshot is of another contact.
-    fn restore(&mut self, snapshot: &Snapshot) -> PyResult<()> {
-        self.held.free()?.restore(&snapshot.0).or_raise()
+    fn restore(mut slf: Taken<'_, Self>, snapshot: &Snapshot) -> PyResult<()> {
+        slf.held.free()?.restore(&snapshot.0).or_raise()
     }
 
     /// The contact at a time [s] within the last step, its ends included.
-    fn within_step(&self, py: Python<'_>, time: f64) -> PyResult<ViscoelasticContact> {
-        let contact = self.get()?;
-        let within = py.detach(|| contact.within_step(time)).or_raise()?;
-        Ok(ViscoelasticContact::of(within, self.recipe.again(py)))
+    fn within_step(slf: Shared<'_, Self>, py: Python<'_>, time: f64) -> PyResult<ViscoelasticContact> {
+        let contact = slf.get()?;
+        let within = free(py, || contact.within_step(time)).or_raise()?;
+        Ok(ViscoelasticContact::of(within, slf.recipe.again(py)))
     }
 
-    fn __repr__(&self) -> PyResult<String> {
-        let of = self.get()?;
-        let ([n1, n2], time, force, approach) = (of.grid().cells(), of.time(), of.force(), of.approach());
-        Ok(format!("ViscoelasticContact({n1} × {n2} cells, time={time} s, force={force:e} N, approach={approach:e} m)"))
+    fn __repr__(slf: Shared<'_, Self>) -> PyResult<String> {
+        let of = slf.get()?;
+        let [n1, n2] = of.grid().cells();
+        let [time, force, approach] = [of.time(), of.force(), of.approach()].map(digits);
+        Ok(format!("ViscoelasticContact({n1} × {n2} cells, time={time} s, force={force} N, approach={approach} m)"))
     }
 }
 
 /// A state of a contact in memory.
+///
+/// >>> contact = ViscoelasticContact(Grid(32, 4e-3), Shape.sphere(10e-3), Material(Rheology.maxwell(1e6, 1.0)))
+/// >>> contact.snapshot()
+/// Snapshot(time=0 s)
 #[pyclass(frozen, module = "viscocontact")]
 pub struct Snapshot(ct::Snapshot);
 

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use numpy::IntoPyArray;
 use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::gc::PyVisit;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use viscocontact::load::LoadHistory as _;
@@ -12,9 +13,12 @@ use viscocontact_identify as id;
 
 use crate::arrays::{Array, column, to_array};
 use crate::errors::{OrRaise, choice, raised_number};
+use crate::interrupt::free;
 use crate::loads::{Load, LoadHistory};
 use crate::measured::text_table;
+use crate::recipe::{Recipe, Reduced, Value};
 use crate::states::ElasticStates;
+use crate::used::{Function, Traversed};
 
 /// A drive and the tip that it presses onto the sample, before the force is measured.
 ///
@@ -27,18 +31,35 @@ use crate::states::ElasticStates;
 /// tip : ElasticStates
 /// stiffness : float, optional
 ///     Of the spring between base and tip [N/m]: the cantilever.
+///
+/// >>> tip = ElasticStates.sphere(5e-6)
+/// >>> experiment = Experiment.trapezoid(1e-6, (1.0, 3.0, 1.0), 0.5, tip)
+/// >>> len(experiment.times), float(experiment.drive.max())
+/// (11, 1e-06)
 #[pyclass(frozen, module = "viscocontact")]
-pub struct Experiment(pub id::Experiment);
+pub struct Experiment {
+    pub of: id::Experiment,
+    pub tip: Py<ElasticStates>,
+}
 
 impl Experiment {
-    fn of(protocol: id::Protocol, tip: &ElasticStates, stiffness: Option<f64>) -> PyResult<Experiment> {
-        let experiment = id::Experiment::new(protocol, Arc::clone(&tip.states));
-        stiffness
-            .map_or(Ok(experiment.clone()), |stiffness| experiment.with_spring(stiffness))
-            .or_raise()
-            .map(Experiment)
+    fn of(protocol: id::Protocol, tip: &Bound<'_, ElasticStates>, stiffness: Option<f64>) -> PyResult<Experiment> {
+        let of = id::Experiment::new(protocol, Arc::clone(&tip.get().states));
+        let of = stiffness.map_or(Ok(of.clone()), |stiffness| of.with_spring(stiffness)).or_raise()?;
+        Ok(Experiment { of, tip: tip.clone().unbind() })
+    }
+
+    fn recipe(&self, py: Python<'_>) -> PyResult<Recipe> {
+        let keywords = PyDict::new(py);
+        // a spring that is rigid is none
+        if let Some(stiffness) = Some(self.of.stiffness()).filter(|stiffness| stiffness.is_finite()) {
+            keywords.set_item("stiffness", stiffness)?;
+        }
+        Recipe::new(py, "", (self.times(py), self.drive(py), &self.tip))?.with_keywords(Some(&keywords))
     }
 }
+
+calls!(Experiment);
 
 #[pymethods]
 impl Experiment {
@@ -47,7 +68,7 @@ impl Experiment {
     fn new(
         times: &Bound<'_, PyAny>,
         drive: &Bound<'_, PyAny>,
-        tip: &ElasticStates,
+        tip: &Bound<'_, ElasticStates>,
         stiffness: Option<f64>,
     ) -> PyResult<Experiment> {
         let protocol = id::Protocol::new(column("times", times)?, column("drive", drive)?).or_raise()?;
@@ -61,7 +82,7 @@ impl Experiment {
         depth: f64,
         durations: [f64; 3],
         interval: f64,
-        tip: &ElasticStates,
+        tip: &Bound<'_, ElasticStates>,
         stiffness: Option<f64>,
     ) -> PyResult<Experiment> {
         Experiment::of(id::Protocol::trapezoid(depth, durations, interval).or_raise()?, tip, stiffness)
@@ -77,7 +98,7 @@ impl Experiment {
         depth: f64,
         hold: f64,
         interval: f64,
-        tip: &ElasticStates,
+        tip: &Bound<'_, ElasticStates>,
         stiffness: Option<f64>,
     ) -> PyResult<Experiment> {
         let protocol = id::Protocol::ramp_hold_retract(speed, [distance, depth], hold, interval);
@@ -92,7 +113,7 @@ impl Experiment {
         rise: f64,
         dwell: f64,
         interval: f64,
-        tip: &ElasticStates,
+        tip: &Bound<'_, ElasticStates>,
         stiffness: Option<f64>,
     ) -> PyResult<Experiment> {
         Experiment::of(id::Protocol::staircase(&depths, rise, dwell, interval).or_raise()?, tip, stiffness)
@@ -100,69 +121,95 @@ impl Experiment {
 
     /// The drive as the load history of a contact: approaches, or springs.
     fn load_history(&self, py: Python<'_>) -> PyResult<LoadHistory> {
-        let history = self.0.load_history().or_raise()?;
-        let loads = self.0.protocol().times().iter().map(|&t| Ok((t, Load::of(py, history.at(t))?)));
+        let history = self.of.load_history().or_raise()?;
+        let loads = self.of.protocol().times().iter().map(|&t| Ok((t, Load::of(py, history.at(t))?)));
         let rows = loads.collect::<PyResult<Vec<(f64, Load)>>>()?;
-        LoadHistory::table(py, rows.into_pyobject(py)?.into_any())
+        LoadHistory::table(py, Value(rows.into_pyobject(py)?.into_any()))
     }
 
     /// The times [s].
     #[getter]
     fn times<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
-        self.0.protocol().times().to_vec().into_pyarray(py).into_any()
+        self.of.protocol().times().to_vec().into_pyarray(py).into_any()
     }
 
     /// The drive [m].
     #[getter]
     fn drive<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
-        self.0.protocol().drive().to_vec().into_pyarray(py).into_any()
+        self.of.protocol().drive().to_vec().into_pyarray(py).into_any()
+    }
+
+    fn __traverse__(&self, visit: PyVisit<'_>) -> Traversed {
+        visit.call(&self.tip)
     }
 }
 
 /// A measured curve: an experiment and the force [N] at each of its times, positive where it presses.
 ///
 /// Raises ValueError if the lengths differ or a value is NaN.
+///
+/// >>> experiment = Experiment([0.0, 0.5, 1.0], [0.0, 0.5e-6, 1e-6], ElasticStates.sphere(5e-6))
+/// >>> curve = Curve(experiment, [0.0, 1e-9, 3e-9])
+/// >>> len(curve), len(curve.within(0.0, 0.9))
+/// (3, 2)
 #[pyclass(frozen, module = "viscocontact")]
-pub struct Curve(pub id::Curve);
+pub struct Curve {
+    pub of: id::Curve,
+    pub tip: Py<ElasticStates>,
+}
+
+impl Curve {
+    /// A part of this curve.
+    fn part(&self, py: Python<'_>, of: id::Result<id::Curve>) -> PyResult<Curve> {
+        Ok(Curve { of: of.or_raise()?, tip: self.tip.clone_ref(py) })
+    }
+
+    fn recipe(&self, py: Python<'_>) -> PyResult<Recipe> {
+        Recipe::new(py, "", (self.experiment(py), self.force(py)?))
+    }
+}
+
+calls!(Curve);
 
 #[pymethods]
 impl Curve {
     #[new]
     fn new(experiment: &Experiment, force: &Bound<'_, PyAny>) -> PyResult<Curve> {
-        id::Curve::new(experiment.0.clone(), column("force", force)?).or_raise().map(Curve)
+        let of = id::Curve::new(experiment.of.clone(), column("force", force)?).or_raise()?;
+        Ok(Curve { of, tip: experiment.tip.clone_ref(force.py()) })
     }
 
     /// The force [N].
     #[getter]
     fn force<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
-        let force = self.0.force().to_vec();
+        let force = self.of.force().to_vec();
         let n = force.len();
         to_array(py, force, &[n])
     }
 
     /// The part from the first time to before the last one [s].
-    fn within(&self, first: f64, last: f64) -> PyResult<Curve> {
-        self.0.within(first..last).or_raise().map(Curve)
+    fn within(&self, py: Python<'_>, first: f64, last: f64) -> PyResult<Curve> {
+        self.part(py, self.of.within(first..last))
     }
 
     /// The part until the drive first comes near its greatest value.
-    fn approach(&self) -> PyResult<Curve> {
-        self.0.approach().or_raise().map(Curve)
+    fn approach(&self, py: Python<'_>) -> PyResult<Curve> {
+        self.part(py, self.of.approach())
     }
 
     /// The part until the drive leaves its greatest value: approach and hold.
-    fn loading(&self) -> PyResult<Curve> {
-        self.0.loading().or_raise().map(Curve)
+    fn loading(&self, py: Python<'_>) -> PyResult<Curve> {
+        self.part(py, self.of.loading())
     }
 
     /// The part until the force returns to the base line: without the pull-off of a tip that sticks.
-    fn until_release(&self) -> PyResult<Curve> {
-        self.0.until_release().or_raise().map(Curve)
+    fn until_release(&self, py: Python<'_>) -> PyResult<Curve> {
+        self.part(py, self.of.until_release())
     }
 
     /// The force below the base line [N], where the tip is drawn back to the sample; None where noise explains it.
     fn pull_off(&self) -> Option<f64> {
-        self.0.pull_off()
+        self.of.pull_off()
     }
 
     /// Oliver and Pharr: the modulus of the unloading, for comparison; off by the creep meanwhile. `area` is the cross section of the tip [m²]
@@ -174,9 +221,9 @@ impl Curve {
     /// >>> read = Curve(experiment, force).oliver_pharr(0.0, lambda h: 6.2832 * 10e-6 * h)
     /// >>> abs(read["modulus"] / 1e9 - 1) < 0.02
     /// True
-    fn oliver_pharr<'py>(&self, py: Python<'py>, contact_point: f64, area: Py<PyAny>) -> PyResult<Bound<'py, PyDict>> {
-        let area = |h: f64| raised_number(Python::attach(|py| area.call1(py, (h,))?.extract(py)), f64::NAN);
-        let of = py.detach(|| id::usual::oliver_pharr(&self.0, contact_point, area)).or_raise()?;
+    fn oliver_pharr<'py>(&self, py: Python<'py>, contact_point: f64, area: Function) -> PyResult<Bound<'py, PyDict>> {
+        let area = |h: f64| raised_number(area.call((h,)), f64::NAN);
+        let of = free(py, || id::usual::oliver_pharr(&self.of, contact_point, area)).or_raise()?;
         Ok(dict! { py;
             "stiffness": of.stiffness,
             "contact_depth": of.contact_depth,
@@ -187,7 +234,7 @@ impl Curve {
 
     /// Checks points, signs and units; raises ValueError with the cure.
     fn check(&self) -> PyResult<()> {
-        self.0.check().or_raise()
+        self.of.check().or_raise()
     }
 
     /// The complex contact modulus of an oscillation of the drive at `frequency` [Hz] in a window of times [s], with its drive at first
@@ -198,14 +245,14 @@ impl Curve {
         window: (f64, f64),
         contact_point: f64,
     ) -> PyResult<(numpy::Complex64, (f64, f64))> {
-        let of = self.0.complex_modulus(frequency, window.0..window.1, contact_point).or_raise()?;
+        let of = self.of.complex_modulus(frequency, window.0..window.1, contact_point).or_raise()?;
         Ok((numpy::Complex64::new(of.storage, of.loss), (of.storage_error, of.loss_error)))
     }
 
     /// The elastic modulus of the approach: "modulus" [Pa], "offset" [N], "contact_point" [m].
     #[pyo3(signature = (contact_point=None))]
     fn loading_modulus<'py>(&self, py: Python<'py>, contact_point: Option<f64>) -> PyResult<Bound<'py, PyDict>> {
-        let of = py.detach(|| id::usual::loading_modulus(&self.0, contact_point)).or_raise()?;
+        let of = free(py, || id::usual::loading_modulus(&self.of, contact_point)).or_raise()?;
         Ok(dict! { py;
             "modulus": of.modulus,
             "offset": of.offset,
@@ -225,7 +272,7 @@ impl Curve {
         use id::usual::RampCorrection::{Factor, HalfRamp, Step};
         let correction =
             choice("correction", correction, &[("step", Step), ("half_ramp", HalfRamp), ("factor", Factor)])?;
-        let of = py.detach(|| id::usual::hold_relaxation(&self.0, contact_point, correction)).or_raise()?;
+        let of = free(py, || id::usual::hold_relaxation(&self.of, contact_point, correction)).or_raise()?;
         Ok(dict! { py;
             "equilibrium": of.equilibrium,
             "relaxing": of.relaxing,
@@ -234,14 +281,19 @@ impl Curve {
         })
     }
 
-    fn __len__(&self) -> usize {
-        self.0.force().len()
-    }
-}
-
-getters! {Curve, of:
     /// The experiment.
-    experiment: Experiment = Experiment(of.experiment().clone());
+    #[getter]
+    fn experiment(&self, py: Python<'_>) -> Experiment {
+        Experiment { of: self.of.experiment().clone(), tip: self.tip.clone_ref(py) }
+    }
+
+    fn __len__(&self) -> usize {
+        self.of.force().len()
+    }
+
+    fn __traverse__(&self, visit: PyVisit<'_>) -> Traversed {
+        visit.call(&self.tip)
+    }
 }
 
 /// The columns of a measured curve, from arrays or a text file with headings.
@@ -252,6 +304,12 @@ getters! {Curve, of:
 ///     [s]
 /// force, deflection, drive, depth : sequence of float, optional
 ///     Force [N], positive where it presses; deflection of the spring, position of its base, depth of the tip [m].
+///
+/// >>> import numpy as np
+/// >>> t = np.linspace(0.0, 1.0, 20)
+/// >>> recording = Recording(t, force=3e-9 * t**1.5, depth=1e-6 * t)
+/// >>> len(recording.curve(ElasticStates.sphere(5e-6)))
+/// 20
 #[pyclass(frozen, module = "viscocontact")]
 pub struct Recording(id::Recording);
 
@@ -279,7 +337,16 @@ impl Recording {
         };
         let (force, deflection) = (given("force", force)?, given("deflection", deflection)?);
         let (drive, depth) = (given("drive", drive)?, given("depth", depth)?);
-        Ok(Recording(id::Recording { times, force, deflection, drive, depth, columns: Vec::new() }))
+        let recording = id::Recording { times, force, deflection, drive, depth, columns: Vec::new() };
+        let columns = [&recording.force, &recording.deflection, &recording.drive, &recording.depth];
+        let refused = |what: &str| Err(PyValueError::new_err(what.to_owned()));
+        if !recording.times.is_sorted_by(|one, next| one < next) {
+            return refused("times: they must ascend, each once");
+        }
+        if columns.into_iter().flatten().next().is_none() {
+            return refused("give force or deflection, and drive or depth: there is no column but the times");
+        }
+        Ok(Recording(recording))
     }
 
     /// Reads a text file whose headings name the columns and their units, with the keywords of `Measurements.from_csv`.
@@ -289,8 +356,8 @@ impl Recording {
         text_signature = "(path, *, decimal_comma=None, delimiter=None, skipped_lines=0, headings=None, only=None)"
     )]
     fn from_csv(py: Python<'_>, path: PathBuf, reading: Option<&Bound<'_, PyDict>>) -> PyResult<Recording> {
-        let table = text_table(path, reading)?;
-        py.detach(|| id::Recording::from_table(&table)).or_raise().map(Recording)
+        let table = text_table(&path, None, reading)?;
+        free(py, || id::Recording::from_table(&table)).or_raise().map(Recording)
     }
 
     /// The same with the other sign of force and deflection.
@@ -309,9 +376,38 @@ impl Recording {
         self.0.columns.iter().map(|taken| (taken.name(), taken.index(), taken.heading())).collect()
     }
 
-    /// A column by its name: "times", "force", "deflection", "drive" or "depth"; None without it.
+    /// The arrays of a pickle; what a file named its columns is not kept.
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        let (py, of) = (slf.py(), &slf.get().0);
+        let array = |values: &Option<Vec<f64>>| values.clone().map(|values| values.into_pyarray(py));
+        let keywords = dict! { py;
+            "force": array(&of.force),
+            "deflection": array(&of.deflection),
+            "drive": array(&of.drive),
+            "depth": array(&of.depth),
+        };
+        let recipe = Recipe::new(py, "", (of.times.clone().into_pyarray(py),))?;
+        recipe.with_keywords(Some(&keywords))?.reduce(slf.get_type())
+    }
+
+    fn __eq__(&self, other: &Recording) -> bool {
+        self.0 == other.0
+    }
+
+    fn __repr__(&self) -> String {
+        let given = [
+            ("force", &self.0.force),
+            ("deflection", &self.0.deflection),
+            ("drive", &self.0.drive),
+            ("depth", &self.0.depth),
+        ];
+        let names: Vec<&str> = given.into_iter().filter_map(|(name, column)| column.as_ref().map(|_| name)).collect();
+        format!("Recording({} times, {})", self.0.times.len(), names.join(", "))
+    }
+
+    /// A column by its name: "time", "force", "deflection", "drive" or "depth"; None without it.
     fn column<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Option<Bound<'py, PyAny>>> {
-        let names = [("times", 0), ("force", 1), ("deflection", 2), ("drive", 3), ("depth", 4)];
+        let names = [("time", 0), ("times", 0), ("force", 1), ("deflection", 2), ("drive", 3), ("depth", 4)];
         let column = match choice("name", name, &names)? {
             0 => Some(&self.0.times),
             1 => self.0.force.as_ref(),
@@ -324,22 +420,27 @@ impl Recording {
 
     /// The curve of a `tip`: with the depth as its drive, or with `stiffness` [N/m] the position of the base of a spring.
     #[pyo3(signature = (tip, *, stiffness=None))]
-    fn curve(&self, tip: &ElasticStates, stiffness: Option<f64>) -> PyResult<Curve> {
-        match stiffness {
-            Some(stiffness) => self.0.spring_curve(&tip.states, stiffness),
-            None => self.0.depth_curve(&tip.states),
-        }
-        .or_raise()
-        .map(Curve)
+    fn curve(&self, tip: &Bound<'_, ElasticStates>, stiffness: Option<f64>) -> PyResult<Curve> {
+        let of = match stiffness {
+            Some(stiffness) => self.0.spring_curve(&tip.get().states, stiffness),
+            None => self.0.depth_curve(&tip.get().states),
+        };
+        Ok(Curve { of: of.or_raise()?, tip: tip.clone().unbind() })
     }
 }
 
 /// The model of a name, or of a pair of name and number of terms or cutoff [s].
 pub fn model(given: &Bound<'_, PyAny>) -> PyResult<id::Model> {
-    if let Ok((name, terms)) = given.extract::<(String, usize)>()
+    if let Ok((name, terms)) = given.extract::<(String, i64)>()
         && name == "prony"
     {
-        return Ok(id::Model::Prony(terms));
+        let terms = usize::try_from(terms).ok().filter(|terms| (1..=MOST_TERMS).contains(terms));
+        let needed = || {
+            PyValueError::new_err(format!(
+                "terms of \"prony\" = {given} is not allowed: they must be 1 to {MOST_TERMS}"
+            ))
+        };
+        return terms.map(id::Model::Prony).ok_or_else(needed);
     }
     match given.extract::<(String, f64)>() {
         Ok((name, cutoff)) if name == "power_law" => return Ok(id::Model::PowerLaw { cutoff }),
@@ -355,5 +456,11 @@ pub fn model(given: &Bound<'_, PyAny>) -> PyResult<id::Model> {
         ("stretched", id::Model::Stretched),
         ("fractional_zener", id::Model::FractionalZener),
     ];
-    choice("model", &name, &models)
+    choice("model", &name, &models).map_err(|error| {
+        let others = "(\"prony\", terms), (\"power_law\", cutoff), (\"power_law_solid\", cutoff)";
+        PyValueError::new_err(format!("{}, or a pair: {others}", error.value(given.py())))
+    })
 }
+
+/// More relaxation times than a curve can tell from each other, by far.
+const MOST_TERMS: usize = 50;

@@ -13,11 +13,13 @@ use crate::arrays::field;
 use crate::errors::OrRaise;
 use crate::fields::{Fields, Shown};
 use crate::grid::Grid;
-use crate::interrupt::interruptible;
+use crate::interrupt::{free, interruptible};
 use crate::kernels::InfluenceKernel;
 use crate::loads::loads;
+use crate::recipe::digits;
 use crate::scene::settings;
 use crate::shapes::geometries;
+use crate::used::{Shared, Taken};
 
 /// A rigid body, or several, pressed onto an elastic body: without time.
 ///
@@ -73,7 +75,7 @@ impl ElasticContact {
         if let Some(options) = options {
             builder = builder.settings(settings(Settings::default(), options)?);
         }
-        let contact = py.detach(|| builder.build()).or_raise()?;
+        let contact = free(py, || builder.build()).or_raise()?;
         Ok(ElasticContact { contact, cancel: Arc::default() })
     }
 
@@ -81,9 +83,9 @@ impl ElasticContact {
     /// iteration; a failure leaves the contact as it was.
     ///
     /// Returns the cost and accuracy: "iterations", "convolutions" (transforms in these units), "residual", and the "warnings" as lines.
-    fn solve<'py>(&mut self, py: Python<'py>, load: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyDict>> {
+    fn solve<'py>(mut slf: Taken<'_, Self>, py: Python<'py>, load: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyDict>> {
         let loads = loads(load)?;
-        let ElasticContact { contact, cancel } = self;
+        let ElasticContact { contact, cancel, .. } = &mut *slf;
         let report = interruptible(py, true, cancel, || contact.solve_unless(cancel, &loads))?;
         Ok(dict! { py;
             "iterations": report.iterations,
@@ -95,27 +97,31 @@ impl ElasticContact {
 
     /// Displaces the surface before any pressure [m], positive into the bodies: an array of the shape of the grid. The next solution
     /// begins from there.
-    fn set_surface(&mut self, displacement: &Bound<'_, PyAny>) -> PyResult<()> {
-        let cells = self.contact.fields().grid().cells();
+    fn set_surface(mut slf: Taken<'_, Self>, displacement: &Bound<'_, PyAny>) -> PyResult<()> {
+        let cells = slf.contact.fields().grid().cells();
         let values = field("displacement", displacement, cells)?;
-        self.contact.set_surface(&values).or_raise()
+        slf.contact.set_surface(&values).or_raise()
     }
 
     /// The contact modulus E* [Pa].
     #[getter]
-    fn modulus(&self) -> f64 {
-        self.contact.modulus()
+    fn modulus(slf: Shared<'_, Self>) -> f64 {
+        slf.contact.modulus()
     }
 
     /// The fields as they are, to keep.
     #[getter]
-    fn fields(&self) -> Fields {
-        Fields(self.contact.fields().keep())
+    fn fields(slf: Shared<'_, Self>) -> Fields {
+        Fields(slf.contact.fields().keep())
     }
 
-    fn __repr__(&self) -> PyResult<String> {
-        let of = self.shown()?;
+    fn __repr__(slf: Shared<'_, Self>) -> PyResult<String> {
+        let of = slf.shown()?;
         let [n1, n2] = of.grid().cells();
-        Ok(format!("ElasticContact({n1} × {n2} cells, force={:e} N, approach={:e} m)", of.force(), of.approach()))
+        Ok(format!(
+            "ElasticContact({n1} × {n2} cells, force={} N, approach={} m)",
+            digits(of.force()),
+            digits(of.approach())
+        ))
     }
 }

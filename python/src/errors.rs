@@ -6,13 +6,10 @@ use std::io;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use pyo3::create_exception;
-use pyo3::exceptions::{
-    PyException, PyFileExistsError, PyFileNotFoundError, PyMemoryError, PyNotImplementedError, PyOSError,
-    PyPermissionError, PyRuntimeError, PyValueError,
-};
+use pyo3::exceptions::{PyException, PyMemoryError, PyNotImplementedError, PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use viscocontact::states::StatesError;
-use viscocontact::{Error, ErrorKind, UserError};
+use viscocontact::{Error, ErrorKind, FileError, UserError};
 use viscocontact_identify::Error as IdentifyError;
 
 use crate::friction::slides;
@@ -21,13 +18,13 @@ create_exception!(
     viscocontact,
     Cancelled,
     PyException,
-    "The call was ended by its caller: a report of progress returned False."
+    "The call was ended by its caller: a report of progress returned False.\n\n>>> contact = ViscoelasticContact(Grid(16, 4e-3), Shape.sphere(10e-3), Material(Rheology.maxwell(1e6, 1.0)))\n>>> list(contact.follow(Load.force(0.5), 1.0, progress=lambda share: False))\nTraceback (most recent call last):\nviscocontact.Cancelled: ..."
 );
 create_exception!(
     viscocontact,
     ConvergenceError,
     PyRuntimeError,
-    "A search did not converge, or needs shorter steps than there are. The message says which, with its numbers."
+    "A search did not converge, or needs shorter steps than there are. The message says which, with its numbers.\n\n>>> import numpy as np\n>>> hills = HeightMap.rough(Grid(32, 1e-3), 0.5e-3, 0.1e-3, rms_slope=0.3)\n>>> contact = ElasticContact(Grid(32, 1e-3), hills, 1e6, max_iterations=1, edge=\"allow\")\n>>> contact.solve(Load.force(0.05))\nTraceback (most recent call last):\nviscocontact.ConvergenceError: ..."
 );
 
 /// Raises the errors of both crates, at the end of a call: first what a function of the user raised in it, whether the crate noticed or not.
@@ -64,18 +61,33 @@ pub fn raise(error: &Error) -> PyErr {
         return slides(text, *over_limit, None);
     }
     match error.kind() {
-        ErrorKind::File => match error.io_kind() {
-            Some(io::ErrorKind::NotFound) => PyFileNotFoundError::new_err(text),
-            Some(io::ErrorKind::PermissionDenied) => PyPermissionError::new_err(text),
-            Some(io::ErrorKind::AlreadyExists) => PyFileExistsError::new_err(text),
-            _ => PyOSError::new_err(text),
-        },
+        // a name that is not allowed, as any other value
+        ErrorKind::File if matches!(error, Error::File(FileError::Extension { .. })) => PyValueError::new_err(text),
+        ErrorKind::File => os_error(error, text),
         ErrorKind::Memory => PyMemoryError::new_err(text),
         ErrorKind::Cancelled => Cancelled::new_err(text),
         ErrorKind::Convergence => ConvergenceError::new_err(text),
         ErrorKind::Unsupported => PyNotImplementedError::new_err(text),
         _ => PyValueError::new_err(text),
     }
+}
+
+/// The OSError of the kind that its number has, with the name of the file, as of `open`.
+fn os_error(error: &Error, text: String) -> PyErr {
+    let file = match error {
+        Error::File(FileError::Unreadable { file, .. }) => file.clone(),
+        Error::Checkpoint { path, .. } => path.display().to_string(),
+        Error::Output(error) => error.path().display().to_string(),
+        _ => return PyOSError::new_err(text),
+    };
+    // those of all systems; text has the file too, and says what to do
+    let number = match error.io_kind() {
+        Some(io::ErrorKind::NotFound) => 2,
+        Some(io::ErrorKind::PermissionDenied) => 13,
+        Some(io::ErrorKind::AlreadyExists) => 17,
+        _ => return PyOSError::new_err(text),
+    };
+    PyOSError::new_err((number, text, file))
 }
 
 /// The message, and those of its causes that it does not repeat.

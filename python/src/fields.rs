@@ -10,9 +10,12 @@ use crate::contact::ViscoelasticContact;
 use crate::elastic::ElasticContact;
 use crate::errors::OrRaise;
 use crate::grid::Grid;
+use crate::interrupt::free;
 use crate::loads::Load;
+use crate::recipe::digits;
 use crate::reports::BodyState;
 use crate::sliding::SteadySliding;
+use crate::used::Shared;
 
 /// What has fields to show.
 pub trait Shown {
@@ -22,12 +25,6 @@ pub trait Shown {
 impl Shown for ViscoelasticContact {
     fn shown(&self) -> PyResult<vf::Fields<'_>> {
         self.get().map(vc::ViscoelasticContact::fields)
-    }
-}
-
-impl Shown for SteadySliding {
-    fn shown(&self) -> PyResult<vf::Fields<'_>> {
-        Ok(self.sliding.fields())
     }
 }
 
@@ -58,17 +55,17 @@ pub struct Fields(pub vf::KeptFields);
 impl Fields {
     fn __repr__(&self) -> String {
         let (of, [n1, n2]) = (self.0.fields(), self.0.fields().grid().cells());
-        format!("Fields({n1} × {n2} cells, force={:e} N, approach={:e} m)", of.force(), of.approach())
+        format!("Fields({n1} × {n2} cells, force={} N, approach={} m)", digits(of.force()), digits(of.approach()))
     }
 }
 
 /// What has fields, as an argument.
 #[derive(FromPyObject)]
 pub enum Showing<'py> {
-    Contact(PyRef<'py, ViscoelasticContact>),
-    Elastic(PyRef<'py, ElasticContact>),
-    Sliding(PyRef<'py, SteadySliding>),
-    Kept(PyRef<'py, Fields>),
+    Contact(Shared<'py, ViscoelasticContact>),
+    Elastic(Shared<'py, ElasticContact>),
+    Sliding(Shared<'py, SteadySliding>),
+    Kept(Shared<'py, Fields>),
 }
 
 impl Shown for Showing<'_> {
@@ -89,49 +86,49 @@ macro_rules! arrays {
         impl $class {
             /// Pressure [Pa], of the shape of the grid.
             #[getter]
-            fn pressure<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
-                let of = self.shown()?;
+            fn pressure<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Array<'py>> {
+                let of = slf.shown()?;
                 to_array(py, of.pressure().to_vec(), &of.grid().cells())
             }
 
             /// Displacement of the surface, positive into the bodies [m], of the shape of the grid.
             #[getter]
-            fn displacement<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
-                let of = self.shown()?;
+            fn displacement<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Array<'py>> {
+                let of = slf.shown()?;
                 to_array(py, of.displacement().to_vec(), &of.grid().cells())
             }
 
             /// Gap between the deformed bodies [m], of the shape of the grid; +inf where there is nothing to touch.
             #[getter]
-            fn gap<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
-                field(py, self.shown()?, |of, values| of.gap_into(values))
+            fn gap<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Array<'py>> {
+                field(py, slf.shown()?, |of, values| of.gap_into(values))
             }
 
             /// Net traction [Pa]: the pressure less the attraction, of the shape of the grid.
             #[getter]
-            fn traction<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
-                field(py, self.shown()?, |of, values| of.traction_into(values))
+            fn traction<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Array<'py>> {
+                field(py, slf.shown()?, |of, values| of.traction_into(values))
             }
         }
     };
 }
 
 /// The numbers of a class that has fields.
-macro_rules! numbers {
+macro_rules! of_fields {
     ($class:ident) => {
         #[pymethods]
         impl $class {
             /// The state of each rigid body.
             #[getter]
-            fn bodies(&self) -> PyResult<Vec<BodyState>> {
-                let of = self.shown()?;
+            fn bodies(slf: Shared<'_, Self>) -> PyResult<Vec<BodyState>> {
+                let of = slf.shown()?;
                 Ok((0..of.bodies()).filter_map(|body| of.body(body)).map(BodyState).collect())
             }
 
             /// The load on the first body.
             #[getter]
-            fn load(&self, py: Python<'_>) -> PyResult<Load> {
-                Load::of(py, self.shown()?.load())
+            fn load(slf: Shared<'_, Self>, py: Python<'_>) -> PyResult<Load> {
+                Load::of(py, slf.shown()?.load())
             }
         }
 
@@ -164,9 +161,9 @@ arrays!(ViscoelasticContact);
 arrays!(ElasticContact);
 arrays!(Fields);
 arrays!(SteadySliding);
-numbers!(ViscoelasticContact);
-numbers!(ElasticContact);
-numbers!(Fields);
+of_fields!(ViscoelasticContact);
+of_fields!(ElasticContact);
+of_fields!(Fields);
 
 /// A field that a contact writes.
 fn field<'py>(
@@ -175,7 +172,7 @@ fn field<'py>(
     write: fn(&vf::Fields<'_>, &mut [f64]) -> vc::Result<()>,
 ) -> PyResult<Array<'py>> {
     let mut values = vec![0.0; of.grid().len()];
-    py.detach(|| write(&of, &mut values)).or_raise()?;
+    free(py, || write(&of, &mut values)).or_raise()?;
     to_array(py, values, &of.grid().cells())
 }
 
@@ -184,8 +181,8 @@ impl ViscoelasticContact {
     /// How the last step of surfaces that attract each other went: contact problems ("passes"), those given up ("rejected"), the greatest
     /// "rise" of the energy over the sum of its parts, the energy "released" [J], and whether the surfaces "jumped". None without attraction.
     #[getter]
-    fn passes<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
-        let Some(of) = self.get()?.passes() else { return Ok(None) };
+    fn passes<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
+        let Some(of) = slf.get()?.passes() else { return Ok(None) };
         Ok(Some(dict! { py;
             "passes": of.passes,
             "rejected": of.rejected,

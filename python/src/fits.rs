@@ -4,31 +4,58 @@ use std::path::PathBuf;
 
 use numpy::IntoPyArray;
 use pyo3::exceptions::{PyIndexError, PyKeyError, PyTypeError};
+use pyo3::gc::PyVisit;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use viscocontact_identify as id;
 
-use crate::arrays::{Array, mapped, never, to_array};
+use crate::arrays::{Array, FROM_ZERO, mapped, never, to_array};
+use crate::curves::Curve;
 use crate::errors::{OrRaise, in_python};
 use crate::grid::Grid;
+use crate::identify::{Identification, several, watched};
+use crate::interrupt::free;
 use crate::materials::Material;
 use crate::pictures::Picture;
 use crate::recipe::Recipe;
 use crate::rheology::Rheology;
 use crate::scene::builder;
+use crate::states::ElasticStates;
+use crate::used::Traversed;
 
 /// One identified parameter.
+///
+/// >>> experiment = Experiment.trapezoid(1e-6, (0.2, 0.5, 0.2), 0.05, ElasticStates.sphere(5e-6))
+/// >>> maxwell = Identification("maxwell")
+/// >>> fit = maxwell.fit(Curve(experiment, maxwell.respond(experiment, {"E0": 2e3, "tau": 0.5})[0]))
+/// >>> fit["tau"].name, round(fit["tau"].value, 6), fit["tau"].scale
+/// ('tau', 0.5, 'logarithm')
 #[pyclass(frozen, module = "viscocontact")]
-pub struct Estimate(id::Estimate);
+pub struct Estimate {
+    of: id::Estimate,
+    fit: Py<Fit>,
+}
 
 #[pymethods]
 impl Estimate {
     fn __repr__(&self) -> String {
-        format!("Estimate({})", self.0)
+        format!("Estimate({})", self.of)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (Py<Fit>, &str))> {
+        Ok((py.get_type::<Fit>().getattr("__getitem__")?, (self.fit.clone_ref(py), &self.of.name)))
+    }
+
+    fn __eq__(&self, other: &Estimate) -> bool {
+        self.of == other.of
+    }
+
+    fn __traverse__(&self, visit: PyVisit<'_>) -> Traversed {
+        visit.call(&self.fit)
     }
 }
 
-getters! {Estimate, of:
+getters! {Estimate.of, of:
     /// Its name.
     name: &str = &of.name;
     /// Its value, in SI units.
@@ -47,46 +74,100 @@ getters! {Estimate, of:
 }
 
 /// The result of a fit: `fit["E0"]` is the estimate of a parameter.
+///
+/// >>> experiment = Experiment.trapezoid(1e-6, (0.2, 0.5, 0.2), 0.05, ElasticStates.sphere(5e-6))
+/// >>> maxwell = Identification("maxwell")
+/// >>> fit = maxwell.fit(Curve(experiment, maxwell.respond(experiment, {"E0": 2e3, "tau": 0.5})[0]))
+/// >>> round(fit.modulus(0.5) / fit.modulus(0.0), 4)     # exp(-1)
+/// 0.3679
 #[pyclass(frozen, module = "viscocontact")]
-pub struct Fit(pub id::Fit);
+pub struct Fit {
+    pub fit: id::Fit,
+    pub by: Py<Identification>,
+    /// The curve of a list that it was, for which the identification may have values of its own.
+    pub of_curve: Option<usize>,
+    pub tips: Vec<Py<ElasticStates>>,
+}
+
+/// A fit in a pickle: what makes it again, and the identification, its curves, the one of a list that it was, and the numbers found.
+type Pickled<'py> = (Bound<'py, PyAny>, (Py<Identification>, Vec<Curve>, Option<usize>, State));
+type State = (Vec<f64>, Vec<(f64, Option<f64>, Vec<f64>)>, usize, Option<f64>);
 
 #[pymethods]
 impl Fit {
-    fn __getitem__(&self, name: &str) -> PyResult<Estimate> {
-        self.0.estimate(name).cloned().map(Estimate).ok_or_else(|| {
-            let names: Vec<&str> = self.0.estimates().iter().map(|estimate| &*estimate.name).collect();
-            PyKeyError::new_err(format!("no parameter is named {name:?}: there are {}", names.join(", ")))
-        })
+    fn __getitem__(slf: Bound<'_, Self>, name: &str) -> PyResult<Estimate> {
+        let fit = &slf.get().fit;
+        let Some(of) = fit.estimate(name).cloned() else {
+            let names: Vec<&str> = fit.estimates().iter().map(|estimate| &*estimate.name).collect();
+            return Err(PyKeyError::new_err(format!("no parameter is named {name:?}: there are {}", names.join(", "))));
+        };
+        Ok(Estimate { of, fit: slf.unbind() })
+    }
+
+    /// The identified parameters, of the material first.
+    #[getter]
+    fn estimates(slf: Bound<'_, Self>) -> Vec<Estimate> {
+        let all = slf.get().fit.estimates().iter();
+        all.map(|of| Estimate { of: of.clone(), fit: slf.clone().unbind() }).collect()
+    }
+
+    /// The fit of a pickle: without a search.
+    #[staticmethod]
+    fn _again(
+        by: Bound<'_, Identification>,
+        curves: &Bound<'_, PyAny>,
+        of_curve: Option<usize>,
+        state: State,
+    ) -> PyResult<Fit> {
+        let (coordinates, noise, iterations, contained) = state;
+        let (curves, tips) = several(curves)?;
+        let state = id::FitState::new(coordinates, noise, iterations, contained);
+        let own = of_curve.map_or_else(|| by.get().of.clone(), |curve| by.get().of.of_curve(curve));
+        Ok(Fit { fit: state.fit(&own, &curves).or_raise()?, by: by.unbind(), of_curve, tips })
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Pickled<'py>> {
+        let curve = |(of, tip): (&id::Curve, &Py<ElasticStates>)| Curve { of: of.clone(), tip: tip.clone_ref(py) };
+        let curves = self.fit.curves().iter().zip(&self.tips).map(curve).collect();
+        let state = self.fit.state();
+        let state = (state.coordinates, state.noise, state.iterations, state.contained);
+        let again = py.get_type::<Fit>().getattr("_again")?;
+        Ok((again, (self.by.clone_ref(py), curves, self.of_curve, state)))
+    }
+
+    fn __traverse__(&self, visit: PyVisit<'_>) -> Traversed {
+        visit.call(&self.by)?;
+        self.tips.iter().try_for_each(|tip| visit.call(tip))
     }
 
     /// Covariance of two parameters on their scales (`Estimate.scale`); None without one of them.
     fn covariance(&self, one: &str, other: &str) -> Option<f64> {
-        self.0.covariance(one, other)
+        self.fit.covariance(one, other)
     }
 
     /// Correlation of two parameters; None without one of them.
     fn correlation(&self, one: &str, other: &str) -> Option<f64> {
-        self.0.correlation(one, other)
+        self.fit.correlation(one, other)
     }
 
     /// The contact modulus E*(t) [Pa] at times after a sudden step [s].
     fn modulus<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        mapped("t", t, |t| self.0.modulus(t), never)
+        mapped("t", t, FROM_ZERO, |t| self.fit.modulus(t), never)
     }
 
     /// The relative standard deviation of `modulus`.
     fn modulus_deviation<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        mapped("t", t, |t| self.0.modulus_band(t)[1], never)
+        mapped("t", t, FROM_ZERO, |t| self.fit.modulus_band(t)[1], never)
     }
 
     /// The shear modulus [Pa] for a known Poisson's ratio, at a time [s].
     fn shear_modulus(&self, t: f64, nu: f64) -> PyResult<f64> {
-        self.0.shear_modulus(t, nu).or_raise()
+        self.fit.shear_modulus(t, nu).or_raise()
     }
 
     /// The incompressible body of the identified contact modulus, against a rigid tip, for contacts.
     fn material(&self, py: Python<'_>) -> PyResult<Material> {
-        let material = self.0.material().or_raise()?;
+        let material = self.fit.material().or_raise()?;
         let spectrum = material.contact_spectrum().or_raise()?;
         let spectrum = spectrum.ok_or_else(|| PyTypeError::new_err("this model has no exact exponential series"))?;
         let shear = spectrum.scaled(SHEAR_OVER_CONTACT).or_raise()?;
@@ -100,19 +181,19 @@ impl Fit {
     fn force<'py>(&self, py: Python<'py>, curve: usize) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         self.check(curve)?;
         let array = |values: &[f64]| values.to_vec().into_pyarray(py).into_any();
-        Ok((array(self.0.force(curve)), array(self.0.residuals(curve))))
+        Ok((array(self.fit.force(curve)), array(self.fit.residuals(curve))))
     }
 
     /// All values of a parameter for which the best fit of the others is not significantly worse.
     #[pyo3(signature = (name, confidence=0.95))]
     fn profile_interval(&self, py: Python<'_>, name: &str, confidence: f64) -> PyResult<(f64, f64)> {
-        py.detach(|| self.0.profile_interval(name, confidence)).or_raise().map(Into::into)
+        self.watched(py, |fit| fit.profile_interval(name, confidence)).map(Into::into)
     }
 
     /// A spectrum without a model from the same curves: "equilibrium" [Pa], "times" [s] and "moduli" [Pa] of the terms, "smoothing", "sigma" [N]
     /// and "forces", an array [N] for each curve.
     fn free_spectrum<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let of = py.detach(|| self.0.free_spectrum()).or_raise()?;
+        let of = self.watched(py, id::Fit::free_spectrum)?;
         let (times, moduli): (Vec<f64>, Vec<f64>) = of.terms.iter().copied().unzip();
         let forces: Vec<_> = of.forces.into_iter().map(|force| force.into_pyarray(py)).collect();
         Ok(dict! { py;
@@ -128,7 +209,7 @@ impl Fit {
     /// The decades of time that the curves determine: dicts of "times" [s], "modulus" that relaxes there [Pa], its "deviation" [Pa], and
     /// "is_determined".
     fn decades<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        let decades = py.detach(|| self.0.decades()).or_raise()?;
+        let decades = self.watched(py, id::Fit::decades)?;
         let of = |of: id::Decade| {
             Ok(dict! { py;
                 "times": (of.times[0], of.times[1]),
@@ -159,7 +240,7 @@ impl Fit {
         options: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<(Array<'py>, f64)> {
         let scene = builder(grid, shape, &self.material(py)?, options)?;
-        let of = py.detach(|| self.0.verify(curve, &scene)).or_raise()?;
+        let of = self.watched(py, |fit| fit.verify(curve, &scene))?;
         let n = of.force.len();
         Ok((to_array(py, of.force, &[n])?, of.difference))
     }
@@ -175,17 +256,17 @@ impl Fit {
                 "aicc_difference": of.aicc_difference,
             })
         };
-        py.detach(|| self.0.variants()).into_iter().map(of).collect()
+        self.watched(py, |fit| Ok(fit.variants()))?.into_iter().map(of).collect()
     }
 
     /// The fit of a curve at each of its times, as arrays: "time" [s], "force" [N], "depth" and "contact_depth" [m].
     #[pyo3(signature = (curve=0))]
     fn samples<'py>(&self, py: Python<'py>, curve: usize) -> PyResult<Bound<'py, PyDict>> {
         self.check(curve)?;
-        let samples = self.0.samples(curve);
+        let samples = self.fit.samples(curve);
         let column = |of: fn(&id::Sample) -> f64| samples.iter().map(of).collect::<Vec<_>>().into_pyarray(py);
         Ok(dict! { py;
-            "time": self.0.curves()[curve].experiment().protocol().times().to_vec().into_pyarray(py),
+            "time": self.fit.curves()[curve].experiment().protocol().times().to_vec().into_pyarray(py),
             "force": column(|sample| sample.force),
             "depth": column(|sample| sample.depth),
             "contact_depth": column(|sample| sample.contact_depth),
@@ -195,23 +276,23 @@ impl Fit {
     /// A picture of a curve: measured and fitted force, residuals and modulus.
     #[pyo3(signature = (curve=0))]
     fn picture(&self, py: Python<'_>, curve: usize) -> PyResult<Picture> {
-        py.detach(|| self.0.picture(curve)).or_raise().map(Picture)
+        free(py, || self.fit.picture(curve)).or_raise().map(Picture)
     }
 
     /// The contact point of a curve [m].
     #[pyo3(signature = (curve=0))]
     fn contact_point(&self, curve: usize) -> PyResult<f64> {
         self.check(curve)?;
-        Ok(self.0.contact_point(curve))
+        Ok(self.fit.contact_point(curve))
     }
 
     fn __repr__(&self) -> String {
-        let all: Vec<String> = self.0.estimates().iter().map(id::Estimate::to_string).collect();
+        let all: Vec<String> = self.fit.estimates().iter().map(id::Estimate::to_string).collect();
         format!("Fit({})", all.join("; "))
     }
 }
 
-getters! {Fit, of:
+getters! {Fit.fit, of:
     /// The model.
     model: String = of.model().to_string();
     /// Number of curves.
@@ -224,8 +305,6 @@ getters! {Fit, of:
     points_in_contact: usize = of.points_in_contact();
     /// Standard deviation of the residuals over that of the noise, 1 if the model is right, and over the greatest force.
     misfit: (f64, f64) = of.misfit().into();
-    /// The identified parameters, of the material first.
-    estimates: Vec<Estimate> = of.estimates().iter().cloned().map(Estimate).collect();
     /// What a user should know before the parameters are used, a line each.
     warnings: Vec<String> = of.warnings().iter().map(in_python).collect();
     /// Standard deviation of the noise [N].
@@ -237,18 +316,32 @@ getters! {Fit, of:
 }
 
 impl Fit {
+    /// Computes what Ctrl-C ends.
+    fn watched<T: Send>(&self, py: Python<'_>, job: impl FnOnce(&id::Fit) -> id::Result<T> + Send) -> PyResult<T> {
+        watched(py, None, |watch| job(&self.fit.clone().watched(watch)))
+    }
+
     fn check(&self, curve: usize) -> PyResult<()> {
-        let n = self.0.curves().len();
+        let n = self.fit.curves().len();
         if curve < n { Ok(()) } else { Err(PyIndexError::new_err(format!("curve {curve} of {n}"))) }
     }
 }
 
 /// Writes a table of fits as a CSV file with a row for each parameter.
+///
+/// >>> import pathlib, tempfile
+/// >>> experiment = Experiment.trapezoid(1e-6, (0.2, 0.5, 0.2), 0.05, ElasticStates.sphere(5e-6))
+/// >>> maxwell = Identification("maxwell")
+/// >>> fit = maxwell.fit(Curve(experiment, maxwell.respond(experiment, {"E0": 2e3, "tau": 0.5})[0]))
+/// >>> path = pathlib.Path(tempfile.mkdtemp(), "fits.csv")
+/// >>> write_fits(path, [fit])
+/// >>> "tau" in path.read_text()
+/// True
 #[pyfunction]
 pub fn write_fits(py: Python<'_>, path: PathBuf, fits: Vec<Bound<'_, Fit>>) -> PyResult<()> {
-    let summaries: Vec<id::Summary> = fits.iter().map(|fit| fit.get().0.summary()).collect();
+    let summaries: Vec<id::Summary> = fits.iter().map(|fit| fit.get().fit.summary()).collect();
     let file = std::fs::File::create(path)?;
-    py.detach(|| id::Summary::write_csv(&summaries, file)).or_raise()
+    free(py, || id::Summary::write_csv(&summaries, file)).or_raise()
 }
 
 /// J over C of an incompressible body.

@@ -7,6 +7,7 @@ use std::time::Duration;
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods};
 use pyo3::create_exception;
 use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::gc::PyVisit;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use viscocontact::friction as vf;
@@ -17,12 +18,13 @@ use crate::contact::timed;
 use crate::errors::{OrRaise, no_exception, raised_number};
 use crate::fields::Fields;
 use crate::grid::Grid;
-use crate::interrupt::interruptible;
+use crate::interrupt::{free, interruptible};
 use crate::loads::{Load, Tilts};
 use crate::materials::Material;
 use crate::recipe::Recipe;
 use crate::reports::StepReport;
 use crate::scene::{builder, unexpected};
+use crate::used::{Function, Shared, Taken, Traversed};
 
 create_exception!(
     viscocontact,
@@ -51,33 +53,38 @@ pub fn slides(message: String, over_limit: f64, direction: Option<[f64; 3]>) -> 
 /// 20000.0
 #[pyclass(frozen, module = "viscocontact")]
 pub struct FrictionLimit {
-    limit: Shared,
+    limit: Limit,
     recipe: Recipe,
 }
 
 impl FrictionLimit {
     fn by(recipe: Recipe, limit: impl vf::FrictionLimit + 'static) -> FrictionLimit {
-        FrictionLimit { limit: Shared(Arc::new(limit)), recipe }
+        FrictionLimit { limit: Limit(Arc::new(limit)), recipe }
     }
 }
 
 /// A limit of any kind.
 #[derive(Debug, Clone)]
-struct Shared(Arc<dyn vf::FrictionLimit>);
+struct Limit(Arc<dyn vf::FrictionLimit>);
 
-impl vf::FrictionLimit for Shared {
+impl vf::FrictionLimit for Limit {
     fn limit(&self, pressure: f64) -> f64 {
         self.0.limit(pressure)
     }
 }
 
 /// A limit by a function of Python.
-#[derive(Debug)]
-struct ByFunction(Py<PyAny>);
+struct ByFunction(Function);
+
+impl std::fmt::Debug for ByFunction {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("a function of Python")
+    }
+}
 
 impl vf::FrictionLimit for ByFunction {
     fn limit(&self, pressure: f64) -> f64 {
-        raised_number(Python::attach(|py| self.0.call1(py, (pressure,))?.extract(py)), f64::NAN)
+        raised_number(self.0.call((pressure,)), f64::NAN)
     }
 }
 
@@ -91,15 +98,19 @@ makers! {FrictionLimit, py:
     /// The lesser of two limits.
     lesser(one: Bound<'_, FrictionLimit>, other: Bound<'_, FrictionLimit>) =
         Ok::<_, vc::Error>(vf::Lesser(one.get().limit.clone(), other.get().limit.clone()));
-
-    /// A function of the pressure [Pa] that returns r [Pa], 0 or more.
-    ///
-    /// An exception of the function comes out of the step, which changes nothing.
-    function(limit: Py<PyAny>) = Ok::<_, vc::Error>(ByFunction(limit.clone_ref(py)));
 }
 
 #[pymethods]
 impl FrictionLimit {
+    /// A function of the pressure [Pa] that returns r [Pa], 0 or more.
+    ///
+    /// An exception of the function comes out of the step, which changes nothing.
+    #[staticmethod]
+    fn function(py: Python<'_>, limit: Function) -> PyResult<FrictionLimit> {
+        let recipe = Recipe::new(py, "function", (limit.clone(),))?.calling([limit.clone()]);
+        Ok(FrictionLimit::by(recipe, ByFunction(limit)))
+    }
+
     /// r [Pa] under a pressure [Pa].
     fn limit(&self, pressure: f64) -> PyResult<f64> {
         let limit = vf::FrictionLimit::limit(&self.limit, pressure);
@@ -186,6 +197,7 @@ made_by_calls!(ShearLoad);
 #[pyclass(module = "viscocontact")]
 pub struct FrictionContact {
     contact: vf::FrictionContact,
+    recipe: Recipe,
     cancel: Arc<AtomicBool>,
     last: Duration,
 }
@@ -199,23 +211,24 @@ impl FrictionContact {
     )]
     fn new(
         py: Python<'_>,
-        grid: &Grid,
-        geometry: &Bound<'_, PyAny>,
-        material: &Material,
-        friction: &Bound<'_, PyAny>,
+        grid: Bound<'_, Grid>,
+        geometry: Bound<'_, PyAny>,
+        material: Bound<'_, Material>,
+        friction: Bound<'_, PyAny>,
         options: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<FrictionContact> {
         let needed = |_| PyTypeError::new_err("friction: a number or a FrictionLimit is needed");
         let limit = match friction.cast::<FrictionLimit>() {
             Ok(limit) => limit.get().limit.clone(),
-            Err(_) => Shared(Arc::new(vf::Coulomb::new(friction.extract().map_err(needed)?).or_raise()?)),
+            Err(_) => Limit(Arc::new(vf::Coulomb::new(friction.extract().map_err(needed)?).or_raise()?)),
         };
         if options.is_some_and(|options| options.contains("time_rule").unwrap_or(false)) {
-            return Err(unexpected("time_rule"));
+            return Err(unexpected("FrictionContact", "time_rule", &[]));
         }
-        let builder = builder(grid, geometry, material, options)?;
-        let contact = py.detach(|| vf::FrictionContact::new(builder, limit)).or_raise()?;
-        Ok(FrictionContact { contact, cancel: Arc::default(), last: Duration::ZERO })
+        let builder = builder(grid.get(), &geometry, material.get(), options)?;
+        let contact = free(py, || vf::FrictionContact::new(builder, limit)).or_raise()?;
+        let recipe = Recipe::new(py, "", (grid, geometry, material, friction))?.with_keywords(options)?;
+        Ok(FrictionContact { contact, recipe, cancel: Arc::default(), last: Duration::ZERO })
     }
 
     /// Advances by `dt` [s] to a load, and to what acts along the surface; `dt` = 0 is a jump.
@@ -227,8 +240,14 @@ impl FrictionContact {
     /// "convolutions" of a pressure on the whole grid, and the largest slip of a cell that sticks, over the largest displacement ("residual").
     ///
     /// Raises `Slides` if friction cannot carry the forces; otherwise as `ViscoelasticContact.step`.
-    fn step<'py>(&mut self, py: Python<'py>, dt: f64, load: &Load, shear: &ShearLoad) -> PyResult<Bound<'py, PyDict>> {
-        let FrictionContact { contact, cancel, last } = self;
+    fn step<'py>(
+        mut slf: Taken<'_, Self>,
+        py: Python<'py>,
+        dt: f64,
+        load: &Load,
+        shear: &ShearLoad,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let FrictionContact { contact, cancel, last, .. } = &mut *slf;
         let (cells, load, shear) = (contact.normal().grid().len(), load.load, shear.load);
         let step = |slow| interruptible(py, slow, cancel, || contact.step_unless(cancel, dt, load, shear));
         match timed(last, cells, step)? {
@@ -250,46 +269,51 @@ impl FrictionContact {
 
     /// The fields in the normal direction, to keep: pressure, gap, displacement and what is made of them.
     #[getter]
-    fn normal(&self) -> Fields {
-        Fields(self.contact.normal().fields().keep())
+    fn normal(slf: Shared<'_, Self>) -> Fields {
+        Fields(slf.contact.normal().fields().keep())
     }
 
     /// Tractions along x1 and x2 [Pa]: two fields, of the shape (2, cells, cells).
     #[getter]
-    fn traction<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
-        self.both(py, self.contact.traction())
+    fn traction<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Array<'py>> {
+        slf.both(py, slf.contact.traction())
     }
 
     /// Slip of the body over the surface in the last step along x1 and x2 [m], 0 where bodies are apart: of the shape (2, cells, cells).
     #[getter]
-    fn slip<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
-        self.both(py, self.contact.slip())
+    fn slip<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Array<'py>> {
+        slf.both(py, slf.contact.slip())
     }
 
     /// Whether each cell sticks, of the shape of the grid.
     #[getter]
-    fn sticks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<bool>>> {
-        self.contact.sticks().into_pyarray(py).reshape(self.contact.normal().grid().cells())
+    fn sticks<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<bool>>> {
+        slf.contact.sticks().into_pyarray(py).reshape(slf.contact.normal().grid().cells())
     }
 
     /// Since the contact was made [J]: the "work" done along the surface, and what "slip" has dissipated of it.
     #[getter]
-    fn work<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let [work, slip] = self.contact.work();
+    fn work<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let [work, slip] = slf.contact.work();
         Ok(dict! { py; "work": work, "slip": slip })
     }
 
-    fn __copy__(&self, py: Python<'_>) -> FrictionContact {
-        let contact = py.detach(|| self.contact.clone());
-        FrictionContact { contact, cancel: Arc::default(), last: self.last }
+    fn __copy__(slf: Shared<'_, Self>, py: Python<'_>) -> FrictionContact {
+        let contact = &slf.contact;
+        let contact = free(py, || contact.clone());
+        FrictionContact { contact, recipe: slf.recipe.again(py), cancel: Arc::default(), last: slf.last }
     }
 
-    fn __deepcopy__(&self, py: Python<'_>, _memo: Bound<'_, PyAny>) -> FrictionContact {
-        self.__copy__(py)
+    fn __deepcopy__(slf: Shared<'_, Self>, py: Python<'_>, _memo: Bound<'_, PyAny>) -> FrictionContact {
+        Self::__copy__(slf, py)
     }
 
-    fn __repr__(&self) -> String {
-        let (of, [x1, x2, _]) = (self.contact.normal(), self.contact.force());
+    fn __traverse__(&self, visit: PyVisit<'_>) -> Traversed {
+        self.recipe.traverse(&visit)
+    }
+
+    fn __repr__(slf: Shared<'_, Self>) -> String {
+        let (of, [x1, x2, _]) = (slf.contact.normal(), slf.contact.force());
         let ([n1, n2], time, force) = (of.grid().cells(), of.time(), of.force());
         format!(
             "FrictionContact({n1} × {n2} cells, time={time} s, force={force:e} N, along the surface ({x1:e}, {x2:e}) N)"
@@ -304,7 +328,13 @@ impl FrictionContact {
     }
 }
 
-getters! {FrictionContact.contact, of:
+impl FrictionContact {
+    fn get(&self) -> PyResult<&vf::FrictionContact> {
+        Ok(&self.contact)
+    }
+}
+
+getters! {by get FrictionContact, of:
     /// Time [s].
     time: f64 = of.normal().time();
     /// How far the body has moved along x1 and x2 [m] and turned [rad].

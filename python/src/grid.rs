@@ -1,11 +1,33 @@
 //! The grid of a contact.
 
 use pyo3::conversion::FromPyObjectOwned;
-use pyo3::exceptions::PyTypeError;
+use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::types::PyBool;
 
 use crate::arrays::{Array, to_array};
 use crate::errors::OrRaise;
+
+/// A number of things: ValueError below 0, as of any number that is not allowed.
+#[derive(Clone, Copy, IntoPyObject)]
+#[pyo3(transparent)]
+pub struct Count(pub usize);
+
+impl FromPyObject<'_, '_> for Count {
+    type Error = PyErr;
+
+    fn extract(given: Borrowed<'_, '_, PyAny>) -> PyResult<Count> {
+        let refused =
+            || PyValueError::new_err(format!("{} is not allowed: a whole number from 0 on is needed", &*given));
+        let is_number = given.extract::<usize>().map(Count);
+        is_number.map_err(|error| if error.is_instance_of::<PyOverflowError>(given.py()) { refused() } else { error })
+    }
+}
+
+/// The same of an argument with a default.
+pub fn count(given: &Bound<'_, PyAny>) -> PyResult<usize> {
+    given.extract::<Count>().map(|count| count.0)
+}
 
 /// A number, or a number for each axis.
 pub struct PerAxis<T>(pub [T; 2]);
@@ -14,6 +36,9 @@ impl<'a, 'py, T: Copy + FromPyObjectOwned<'py>> FromPyObject<'a, 'py> for PerAxi
     type Error = PyErr;
 
     fn extract(given: Borrowed<'a, 'py, PyAny>) -> PyResult<PerAxis<T>> {
+        if given.is_instance_of::<PyBool>() {
+            return Err(PyTypeError::new_err(format!("{} is no number", &*given)));
+        }
         let both = given.extract::<T>().map(|same| [same; 2]).or_else(|_| given.extract::<[T; 2]>());
         let needed = "a number, whole where it counts cells, or a pair of them is needed";
         both.map(PerAxis).map_err(|_| PyTypeError::new_err(needed))
@@ -33,7 +58,7 @@ impl<'a, 'py, T: Copy + FromPyObjectOwned<'py>> FromPyObject<'a, 'py> for PerAxi
 ///
 /// >>> grid = Grid((64, 32), (4e-3, 2e-3))
 /// >>> grid
-/// Grid([64, 32], [0.004, 0.002])
+/// Grid((64, 32), (0.004, 0.002))
 /// >>> x1, x2 = grid.coordinates()
 /// >>> x1.shape, x2.shape, (x1 + x2).shape
 /// ((64, 1), (1, 32), (64, 32))
@@ -58,7 +83,11 @@ impl Grid {
     }
 
     fn __repr__(&self) -> String {
-        format!("Grid({:?}, {:?})", self.0.cells(), self.0.lengths())
+        format!("Grid({:?}, {:?})", self.shape(), self.lengths())
+    }
+
+    fn __hash__(&self, py: Python<'_>) -> PyResult<isize> {
+        self.__getnewargs__().into_pyobject(py)?.hash()
     }
 
     fn __getnewargs__(&self) -> ((usize, usize), (f64, f64)) {

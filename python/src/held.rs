@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Duration;
 
 use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
+use pyo3::gc::PyVisit;
 use pyo3::prelude::*;
 use viscocontact as vc;
 use viscocontact::load::LoadHistory;
@@ -15,49 +16,54 @@ use viscocontact::states::{ElasticStates, StatesContact as InStates};
 
 use crate::arrays::column;
 use crate::errors::OrRaise;
-use crate::recipe::Recipe;
+use crate::grid::Count;
+use crate::recipe::{Recipe, Value};
+use crate::used::{Function, Traversed};
 
 /// Times at which steps end or states are sampled, counted from the start of a run.
 ///
 /// A sequence of times [s] does as well. `+` joins them.
 ///
 /// >>> Times.every(0.1) + Times.decades(1e-6, 10)
-/// Times(...)
+/// Times.every(0.1) + Times.decades(1e-06, 10)
 #[pyclass(frozen, module = "viscocontact")]
-pub struct Times(vr::Times);
+pub struct Times {
+    times: vr::Times,
+    recipe: Recipe,
+}
+
+impl Times {
+    fn by(recipe: Recipe, times: vr::Times) -> Times {
+        Times { times, recipe }
+    }
+}
+
+makers! {Times, py:
+    /// The multiples of an `interval` [s].
+    every(interval: f64) = Ok::<_, vc::Error>(vr::Times::every(interval));
+
+    /// The time `first` [s], and so many in each decade beyond.
+    decades(first: f64, per_decade: Count) = Ok::<_, vc::Error>(vr::Times::decades(first, per_decade.0));
+}
 
 #[pymethods]
 impl Times {
-    /// The multiples of an `interval` [s].
-    #[staticmethod]
-    fn every(interval: f64) -> Times {
-        Times(vr::Times::every(interval))
+    fn __add__(slf: Bound<'_, Self>, other: Value<'_>) -> PyResult<Times> {
+        let joined = slf.get().times.clone().and(times("times", Some(other.clone()))?.unwrap_or_default());
+        Ok(Times::by(Recipe::new(slf.py(), "__add__", (slf, other))?, joined))
     }
 
-    /// The time `first` [s], and so many in each decade beyond.
-    #[staticmethod]
-    fn decades(first: f64, per_decade: usize) -> Times {
-        Times(vr::Times::decades(first, per_decade))
-    }
-
-    fn __add__(&self, other: &Bound<'_, PyAny>) -> PyResult<Times> {
-        let other = times("times", Some(other.clone()))?;
-        Ok(Times(self.0.clone().and(other.unwrap_or_default())))
-    }
-
-    fn __radd__(&self, other: &Bound<'_, PyAny>) -> PyResult<Times> {
-        self.__add__(other)
-    }
-
-    fn __repr__(&self) -> &'static str {
-        "Times(...)"
+    fn __radd__(slf: Bound<'_, Self>, other: Value<'_>) -> PyResult<Times> {
+        Times::__add__(slf, other)
     }
 }
+
+made_by_calls!(Times);
 
 pub fn times(name: &str, given: Option<Bound<'_, PyAny>>) -> PyResult<Option<vr::Times>> {
     let Some(given) = given else { return Ok(None) };
     match given.cast::<Times>() {
-        Ok(times) => Ok(Some(times.get().0.clone())),
+        Ok(times) => Ok(Some(times.get().times.clone())),
         Err(_) => Ok(Some(column(name, &given)?.into())),
     }
 }
@@ -69,7 +75,6 @@ pub struct Options {
     pub until: f64,
     pub stop_at: Option<vr::Times>,
     pub sample_at: Option<vr::Times>,
-    pub progress: Option<Py<PyAny>>,
     pub fields_to: Option<f64>,
     pub autosave: Option<(PathBuf, Duration)>,
 }
@@ -155,10 +160,13 @@ led! {
     } => crate::states_contact::StatesContact;
 }
 
+/// What the garbage collector of Python sees of a run: its load, and the functions of its events.
+pub type Called = (Py<PyAny>, Vec<Function>);
+
 /// A contact, or the run that owns it.
 pub enum Held<C: Led> {
     Free(C),
-    Run(Box<vr::Run<'static, C>>, u64),
+    Run(Box<vr::Run<'static, C>>, u64, Called),
     Lost,
 }
 
@@ -169,7 +177,7 @@ impl<C: Led> Held<C> {
     pub fn contact(&self) -> PyResult<&C> {
         match self {
             Held::Free(contact) => Ok(contact),
-            Held::Run(run, _) => Ok(run.contact()),
+            Held::Run(run, ..) => Ok(run.contact()),
             Held::Lost => Err(lost()),
         }
     }
@@ -177,7 +185,7 @@ impl<C: Led> Held<C> {
     /// The contact, taken out of its run, which ends.
     pub fn free(&mut self) -> PyResult<&mut C> {
         if let Held::Run(..) = self
-            && let Held::Run(run, _) = std::mem::replace(self, Held::Lost)
+            && let Held::Run(run, ..) = std::mem::replace(self, Held::Lost)
         {
             *self = Held::Free(run.into_contact());
         }
@@ -188,22 +196,22 @@ impl<C: Led> Held<C> {
     }
 
     /// The run of this number.
-    pub fn run(&mut self, number: u64) -> PyResult<(&mut vr::Run<'static, C>, u64)> {
+    pub fn run(&mut self, number: u64) -> PyResult<&mut vr::Run<'static, C>> {
         match self {
-            Held::Run(run, own) if *own == number => Ok((run, number)),
-            _ => Err(PyRuntimeError::new_err("the run is over: its contact went on by another run or step")),
+            Held::Run(run, own, _) if *own == number => Ok(run),
+            _ => Err(over()),
         }
     }
 
     pub fn run_ref(&self, number: u64) -> PyResult<&vr::Run<'static, C>> {
         match self {
-            Held::Run(run, own) if *own == number => Ok(run),
-            _ => Err(PyRuntimeError::new_err("the run is over: its contact went on by another run or step")),
+            Held::Run(run, own, _) if *own == number => Ok(run),
+            _ => Err(over()),
         }
     }
 
     /// Begins a run, and returns its number.
-    pub fn follow(&mut self, options: &Options, cancel: Arc<AtomicBool>) -> PyResult<u64> {
+    pub fn follow(&mut self, options: Options, load: Py<PyAny>, cancel: Arc<AtomicBool>) -> PyResult<u64> {
         options.check().or_raise()?;
         let (bodies, given) = (self.free()?.in_space().map_or(1, |fields| fields.bodies()), options.histories.len());
         if given != bodies {
@@ -213,12 +221,12 @@ impl<C: Led> Held<C> {
         }
         let Held::Free(contact) = std::mem::replace(self, Held::Lost) else { return Err(lost()) };
         let number = NEXT.fetch_add(1, Ordering::Relaxed);
-        let run = contact.along(options).or_raise()?.cancelled_by(cancel);
+        let run = contact.along(&options).or_raise()?.cancelled_by(cancel);
         let mut run = options.ask(run).or_raise()?;
         if let Some((path, every)) = &options.autosave {
             run = run.autosave_to(path, *every);
         }
-        *self = Held::Run(Box::new(run), number);
+        *self = Held::Run(Box::new(run), number, (load, Vec::new()));
         Ok(number)
     }
 
@@ -226,13 +234,25 @@ impl<C: Led> Held<C> {
         &mut self,
         number: u64,
         quantity: impl Fn(&C) -> f64 + Send + Sync + 'static,
+        function: Option<Function>,
         crossing: Crossing,
     ) -> PyResult<()> {
         self.run(number)?;
-        let Held::Run(run, _) = std::mem::replace(self, Held::Lost) else { return Err(lost()) };
-        *self = Held::Run(Box::new(run.stop_when(quantity, crossing).or_raise()?), number);
+        let Held::Run(run, _, (load, mut called)) = std::mem::replace(self, Held::Lost) else { return Err(lost()) };
+        called.extend(function);
+        *self = Held::Run(Box::new(run.stop_when(quantity, crossing).or_raise()?), number, (load, called));
         Ok(())
     }
+
+    pub fn traverse(&self, visit: &PyVisit<'_>) -> Traversed {
+        let Held::Run(_, _, (load, called)) = self else { return Ok(()) };
+        visit.call(load)?;
+        called.iter().try_for_each(|function| visit.call(&*function.0))
+    }
+}
+
+fn over() -> PyErr {
+    PyRuntimeError::new_err("the run is over: its contact went on by another run or step")
 }
 
 /// The error of a contact that a panic has lost.

@@ -1,14 +1,23 @@
 //! Moduli from measured indentation curves, with their uncertainty.
 
-use pyo3::exceptions::PyTypeError;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+use pyo3::exceptions::{PyRuntimeError, PyTypeError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use viscocontact_identify as id;
 
 use crate::arrays::{Array, to_array};
 use crate::curves::{Curve, Experiment, model};
-use crate::errors::OrRaise;
+use crate::errors::{Kept, OrRaise};
 use crate::fits::Fit;
+use crate::interrupt::{free, interruptible};
+use crate::recipe::{Recipe, Value};
+use crate::scene::unexpected;
+use crate::states::ElasticStates;
+use crate::used::{Function, goes_on};
 
 /// What is known of a property of each curve: one for all, or a list with one for each.
 fn per_curve(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Option<id::PerCurve>> {
@@ -40,6 +49,46 @@ fn nuisance(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Option<id::Nuisanc
     }
 }
 
+const OPTIONS: [&str; 11] =
+    ["contact_point", "offset", "drift", "tilt", "drag", "stiffness", "noise", "known_sigma", "robust", "fix", "start"];
+
+/// The identification with an option of this name.
+fn option(of: id::Identification, name: &str, given: &Bound<'_, PyAny>) -> PyResult<id::Identification> {
+    let known = || per_curve(name, given);
+    let set = |set: fn(id::Identification, id::PerCurve) -> id::Identification, of: id::Identification| {
+        Ok::<_, PyErr>(match known()? {
+            Some(known) => set(of, known),
+            None => of,
+        })
+    };
+    let names = of.model().parameters();
+    let each = |of: id::Identification, give: fn(id::Identification, &str, f64) -> id::Identification| {
+        named(given.cast()?)?.into_iter().try_fold(of, |of, (name, value)| match names.contains(&name) {
+            true => Ok(give(of, &name, value)),
+            false => Err(id::Error::UnknownParameter { name, names: names.join(", ") }).or_raise(),
+        })
+    };
+    match name {
+        "contact_point" => set(id::Identification::contact_point, of),
+        "offset" => set(id::Identification::offset, of),
+        "drift" => set(id::Identification::drift, of),
+        "tilt" => set(id::Identification::tilt, of),
+        "drag" => set(id::Identification::drag, of),
+        "stiffness" => set(id::Identification::stiffness, of),
+        "noise" => Ok(of.noise(match (given.extract::<f64>(), given.extract::<&str>()) {
+            (Ok(coefficient), _) => id::Noise::AutoregressiveWith(coefficient),
+            (_, Ok("white")) => id::Noise::White,
+            (_, Ok("autoregressive")) => id::Noise::Autoregressive,
+            _ => return Err(PyTypeError::new_err("noise: \"white\", \"autoregressive\" or its coefficient is needed")),
+        })),
+        "known_sigma" => Ok(of.known_sigma(given.extract()?)),
+        "robust" => Ok(if given.extract()? { of.robust() } else { of }),
+        "fix" => each(of, id::Identification::fix),
+        "start" => each(of, id::Identification::start),
+        _ => Err(unexpected("Identification", name, &OPTIONS)),
+    }
+}
+
 /// A model of the material, and what is known of the measurement: fits curves, and gives bounds before an experiment.
 ///
 /// Parameters
@@ -65,97 +114,84 @@ fn nuisance(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Option<id::Nuisanc
 /// >>> abs(fit["tau"].value / 0.5 - 1) < 0.01
 /// True
 #[pyclass(frozen, module = "viscocontact")]
-pub struct Identification(id::Identification);
+pub struct Identification {
+    pub of: id::Identification,
+    recipe: Recipe,
+}
 
 #[pymethods]
 impl Identification {
     #[new]
-    #[pyo3(signature = (model, *, contact_point=None, offset=None, drift=None, tilt=None, drag=None, stiffness=None, noise=None, known_sigma=None, robust=false, fix=None, start=None))]
-    #[allow(clippy::too_many_arguments)]
-    fn new(
-        model: &Bound<'_, PyAny>,
-        contact_point: Option<&Bound<'_, PyAny>>,
-        offset: Option<&Bound<'_, PyAny>>,
-        drift: Option<&Bound<'_, PyAny>>,
-        tilt: Option<&Bound<'_, PyAny>>,
-        drag: Option<&Bound<'_, PyAny>>,
-        stiffness: Option<&Bound<'_, PyAny>>,
-        noise: Option<&Bound<'_, PyAny>>,
-        known_sigma: Option<f64>,
-        robust: bool,
-        fix: Option<&Bound<'_, PyDict>>,
-        start: Option<&Bound<'_, PyDict>>,
-    ) -> PyResult<Identification> {
-        type Setter = fn(id::Identification, id::PerCurve) -> id::Identification;
-        let mut identification = id::Identification::new(self::model(model)?);
-        let nuisances: [(&str, Option<&Bound<'_, PyAny>>, Setter); 6] = [
-            ("contact_point", contact_point, id::Identification::contact_point),
-            ("offset", offset, id::Identification::offset),
-            ("drift", drift, id::Identification::drift),
-            ("tilt", tilt, id::Identification::tilt),
-            ("drag", drag, id::Identification::drag),
-            ("stiffness", stiffness, id::Identification::stiffness),
-        ];
-        for (name, given, set) in nuisances {
-            if let Some(known) = given.map(|given| per_curve(name, given)).transpose()?.flatten() {
-                identification = set(identification, known);
+    #[pyo3(
+        signature = (model, **options),
+        text_signature = "(model, *, contact_point=None, offset=None, drift=None, tilt=None, drag=None, stiffness=None, noise=None, known_sigma=None, robust=False, fix=None, start=None)"
+    )]
+    fn new(py: Python<'_>, model: Value<'_>, options: Option<Value<'_>>) -> PyResult<Identification> {
+        let options =
+            options.map_or_else(|| Ok(PyDict::new(py)), |given| Ok::<_, PyErr>(given.0.cast_into::<PyDict>()?))?;
+        let mut of = id::Identification::new(self::model(&model)?);
+        let twice =
+            |name: Bound<'_, PyAny>| PyTypeError::new_err(format!("give {name} in fix or in start, not in both"));
+        if let (Ok(Some(fix)), Ok(Some(start))) = (options.get_item("fix"), options.get_item("start")) {
+            let both = fix.try_iter()?.flatten().find(|name| start.contains(name).unwrap_or(false));
+            both.map_or(Ok(()), |name| Err(twice(name)))?;
+        }
+        for (name, given) in &options {
+            if !given.is_none() {
+                of = option(of, name.extract()?, &given)?;
             }
         }
-        if robust {
-            identification = identification.robust();
-        }
-        if let Some(noise) = noise {
-            identification = identification.noise(match (noise.extract::<f64>(), noise.extract::<&str>()) {
-                (Ok(coefficient), _) => id::Noise::AutoregressiveWith(coefficient),
-                (_, Ok("white")) => id::Noise::White,
-                (_, Ok("autoregressive")) => id::Noise::Autoregressive,
-                _ => {
-                    return Err(PyTypeError::new_err(
-                        "noise: \"white\", \"autoregressive\" or its coefficient is needed",
-                    ));
-                }
-            });
-        }
-        if let Some(sigma) = known_sigma {
-            identification = identification.known_sigma(sigma);
-        }
-        let names = identification.model().parameters();
-        if let (Some(fix), Some(start)) = (fix, start) {
-            for name in start.keys() {
-                if fix.contains(&name)? {
-                    return Err(PyTypeError::new_err(format!("give {name} in fix or in start, not in both")));
-                }
-            }
-        }
-        type Give = fn(id::Identification, &str, f64) -> id::Identification;
-        for (given, give) in [(fix, id::Identification::fix as Give), (start, id::Identification::start)] {
-            for (name, value) in given.map(named).transpose()?.unwrap_or_default() {
-                if !names.contains(&name) {
-                    return Err(id::Error::UnknownParameter { name, names: names.join(", ") }).or_raise();
-                }
-                identification = give(identification, &name, value);
-            }
-        }
-        Ok(Identification(identification))
+        of.check().or_raise()?;
+        Ok(Identification { of, recipe: Recipe::new(py, "", (model,))?.with_keywords(Some(&options))? })
     }
 
     /// Fits a curve, or several of one material together.
     ///
+    /// `progress` is called without arguments before each step of the search; the fit ends with `Cancelled` where it returns False. Ctrl-C
+    /// ends it, too.
+    ///
     /// Raises ValueError if the curves do not suit, ConvergenceError if the search does not converge.
-    fn fit(&self, py: Python<'_>, curves: &Bound<'_, PyAny>) -> PyResult<Fit> {
-        let curves = several(curves)?;
-        py.detach(|| self.0.fit(&curves)).or_raise().map(Fit)
+    #[pyo3(signature = (curves, *, progress=None))]
+    fn fit(slf: Bound<'_, Self>, curves: &Bound<'_, PyAny>, progress: Option<Function>) -> PyResult<Fit> {
+        let (curves, tips) = several(curves)?;
+        let of = slf.get().of.clone();
+        let fit = watched(slf.py(), progress, |watch| of.watched(watch).fit(&curves))?;
+        Ok(Fit { fit, by: slf.unbind(), of_curve: None, tips })
     }
 
     /// Fits each curve alone, on all cores, as those of a force map: a list of fits, and of exceptions where one failed.
-    fn fit_each(&self, py: Python<'_>, curves: &Bound<'_, PyAny>) -> PyResult<Vec<Py<PyAny>>> {
-        let curves = several(curves)?;
-        let fits = py.detach(|| self.0.fit_each(&curves, |_| {}));
-        let of = |fit: id::Result<id::Fit>| match fit.or_raise() {
-            Ok(fit) => Ok(Py::new(py, Fit(fit))?.into_any()),
+    ///
+    /// `progress` is called after each fit with the part that is done; where it returns False, the others are not fitted: `Cancelled` is in their
+    /// place. Ctrl-C ends the call.
+    #[pyo3(signature = (curves, *, progress=None))]
+    fn fit_each(
+        slf: Bound<'_, Self>,
+        curves: &Bound<'_, PyAny>,
+        progress: Option<Function>,
+    ) -> PyResult<Vec<Py<PyAny>>> {
+        let (py, (curves, tips)) = (slf.py(), several(curves)?);
+        let (done, total) = (AtomicUsize::new(0), curves.len() as f64);
+        let (ended, kept) = (Arc::new(AtomicBool::new(false)), Kept::default());
+        let told = |_: &id::Result<id::Fit>| {
+            let share = (done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / total;
+            if !kept.number(goes_on(progress.as_ref(), (share,)), false) {
+                ended.store(true, Ordering::Relaxed);
+            }
+        };
+        let own = slf.get().of.clone();
+        let fits = kept.raise_or(watched(py, None, |watch| {
+            let ended = Arc::clone(&ended);
+            let goes_on = move || if ended.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { watch() };
+            Ok(own.watched(goes_on).fit_each(&curves, told))
+        }))?;
+        let of = |(curve, fit): (usize, id::Result<id::Fit>)| match fit.or_raise() {
+            Ok(fit) => {
+                let (by, tips) = (slf.clone().unbind(), vec![tips[curve].clone_ref(py)]);
+                Ok(Py::new(py, Fit { fit, by, of_curve: Some(curve), tips })?.into_any())
+            }
             Err(error) => Ok(error.into_value(py).into_any()),
         };
-        fits.into_iter().map(of).collect()
+        fits.into_iter().enumerate().map(of).collect()
     }
 
     /// Force [N] and depth [m] at each time of an experiment, for parameters of the material by name.
@@ -167,7 +203,7 @@ impl Identification {
     ) -> PyResult<(Array<'py>, Array<'py>)> {
         let named = named(values)?;
         let named: Vec<(&str, f64)> = named.iter().map(|(name, value)| (&**name, *value)).collect();
-        let samples = py.detach(|| self.0.respond(&experiment.0, &named)).or_raise()?;
+        let samples = free(py, || self.of.respond(&experiment.of, &named)).or_raise()?;
         let n = [samples.len()];
         let (force, depth) = samples.iter().map(|sample| (sample.force, sample.depth)).unzip();
         Ok((to_array(py, force, &n)?, to_array(py, depth, &n)?))
@@ -185,13 +221,15 @@ impl Identification {
         let named = named(values)?;
         let named: Vec<(&str, f64)> = named.iter().map(|(name, value)| (&**name, *value)).collect();
         let experiments: Vec<id::Experiment> =
-            experiments.iter().map(|experiment| experiment.get().0.clone()).collect();
-        let bounds = py.detach(|| self.0.bounds(&experiments, &named, sigma)).or_raise()?;
+            experiments.iter().map(|experiment| experiment.get().of.clone()).collect();
+        let bounds = free(py, || self.of.bounds(&experiments, &named, sigma)).or_raise()?;
         Ok(bounds.names.iter().filter_map(|name| Some((name.clone(), bounds.deviation(name)?))).collect())
     }
 }
 
-getters! {Identification, of:
+made_by_calls!(Identification);
+
+getters! {Identification.of, of:
     /// Names of the parameters of the model.
     parameters: Vec<String> = of.model().parameters();
 }
@@ -200,12 +238,21 @@ getters! {Identification, of:
 /// (fit, difference, weight). Exceptions, as `Identification.fit_each` returns them, are left out.
 ///
 /// Raises ValueError if fits are of different curves.
+///
+/// >>> experiment = Experiment.trapezoid(1e-6, (0.2, 0.5, 0.2), 0.05, ElasticStates.sphere(5e-6))
+/// >>> force, _ = Identification("maxwell").respond(experiment, {"E0": 2e3, "tau": 0.5})
+/// >>> fits = [Identification(model).fit(Curve(experiment, force)) for model in ("elastic", "maxwell")]
+/// >>> ranked(fits)[0][0].model
+/// 'Maxwell'
 #[pyfunction]
-pub fn ranked(fits: Vec<Bound<'_, PyAny>>) -> PyResult<Vec<(Fit, f64, f64)>> {
-    let fits: Vec<id::Fit> =
-        fits.iter().filter_map(|fit| fit.cast::<Fit>().ok()).map(|fit| fit.get().0.clone()).collect();
-    let ranked = id::ranked(fits.into_iter().map(Ok)).or_raise()?;
-    Ok(ranked.into_iter().map(|(fit, difference, weight)| (Fit(fit), difference, weight)).collect())
+pub fn ranked(fits: Vec<Bound<'_, PyAny>>) -> PyResult<Vec<(Bound<'_, Fit>, f64, f64)>> {
+    let fits: Vec<Bound<'_, Fit>> = fits.into_iter().filter_map(|fit| fit.cast_into::<Fit>().ok()).collect();
+    let ranked = id::ranked(fits.iter().map(|fit| Ok(fit.get().fit.clone()))).or_raise()?;
+    let place = |(fit, difference, weight): (id::Fit, f64, f64)| {
+        let own = fits.iter().find(|own| own.get().fit.state() == fit.state() && own.get().fit.model() == fit.model());
+        own.map(|own| (own.clone(), difference, weight))
+    };
+    Ok(ranked.into_iter().filter_map(place).collect())
 }
 
 /// Whether two relaxation times, each (time [s], standard deviation of its logarithm, contact area [m²]), agree with creep (equal times) or
@@ -220,13 +267,50 @@ pub fn drainage_or_creep(one: (f64, f64, f64), other: (f64, f64, f64)) -> PyResu
     Ok(format!("{:?}", scaling.verdict).to_lowercase())
 }
 
-fn several(curves: &Bound<'_, PyAny>) -> PyResult<Vec<id::Curve>> {
+type Several = (Vec<id::Curve>, Vec<Py<ElasticStates>>);
+
+/// The curves of the crate, and their tips.
+pub fn several(curves: &Bound<'_, PyAny>) -> PyResult<Several> {
+    let own = |curve: &Bound<'_, Curve>| (curve.get().of.clone(), curve.get().tip.clone_ref(curve.py()));
     if let Ok(curve) = curves.cast::<Curve>() {
-        return Ok(vec![curve.get().0.clone()]);
+        return Ok([own(curve)].into_iter().unzip());
     }
     let needed = "curves: a Curve or a sequence of them is needed";
     let curves: Vec<Bound<'_, Curve>> = curves.extract().map_err(|_| PyTypeError::new_err(needed))?;
-    Ok(curves.iter().map(|curve| curve.get().0.clone()).collect())
+    Ok(curves.iter().map(own).unzip())
+}
+
+/// What ends a search where it breaks.
+pub type Watch = Box<dyn Fn() -> ControlFlow<()> + Send + Sync>;
+
+/// Computes what is watched: Ctrl-C ends it, and a report of progress that returns False.
+pub fn watched<T: Send>(
+    py: Python<'_>,
+    progress: Option<Function>,
+    job: impl FnOnce(Watch) -> id::Result<T> + Send,
+) -> PyResult<T> {
+    let cancel = Arc::<AtomicBool>::default();
+    let (flag, kept) = (Arc::clone(&cancel), Kept::default());
+    let kept_of = kept.clone();
+    let watch = move || {
+        let is_on = !flag.load(Ordering::Relaxed) && kept_of.number(goes_on(progress.as_ref(), ()), false);
+        // once it has ended, it does not go on
+        flag.store(!is_on, Ordering::Relaxed);
+        if is_on { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    };
+    let mut failed = None;
+    let result = kept.raise_or(interruptible(py, true, &cancel, || match job(Box::new(watch)) {
+        Ok(value) => Ok(Some(value)),
+        Err(id::Error::Contact(error)) => Err(error),
+        Err(error) => {
+            failed = Some(error);
+            Ok(None)
+        }
+    }))?;
+    match failed {
+        Some(error) => Err(error).or_raise(),
+        None => result.ok_or_else(|| PyRuntimeError::new_err("the fit has no result")),
+    }
 }
 
 fn named(values: &Bound<'_, PyDict>) -> PyResult<Vec<(String, f64)>> {

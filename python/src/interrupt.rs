@@ -1,19 +1,47 @@
-//! Ctrl-C while Rust computes.
+//! Ctrl-C while Rust computes, and computing in a process that was forked.
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::Duration;
 
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
 use viscocontact::Result;
 
-use crate::errors::{OrRaise, no_exception};
+use crate::errors::{OrRaise, no_exception, raised_number};
+use crate::used::{Function, goes_on};
 
 /// Time between two looks for a signal.
 const LISTEN: Duration = Duration::from_millis(50);
+
+/// The one thread on which a process that was forked computes: the threads of its parent are not in it, and who waited for them would hang.
+static OF_CHILD: Mutex<Option<Arc<ThreadPool>>> = Mutex::new(None);
+
+/// Called in a process that was forked, for it and for its children.
+#[pyfunction]
+#[pyo3(name = "_forked")]
+pub fn forked() {
+    let pool = ThreadPoolBuilder::new().num_threads(1).build().ok().map(Arc::new);
+    // the threads of a pool before are not in this process, either: it has no end here
+    std::mem::forget(std::mem::replace(&mut *OF_CHILD.lock().unwrap_or_else(PoisonError::into_inner), pool));
+}
+
+/// Computes without the GIL.
+pub fn free<T: Send>(py: Python<'_>, job: impl FnOnce() -> T + Send) -> T {
+    py.detach(|| on_own_threads(job))
+}
+
+fn on_own_threads<T: Send>(job: impl FnOnce() -> T + Send) -> T {
+    let pool = OF_CHILD.lock().unwrap_or_else(PoisonError::into_inner).clone();
+    let Some(pool) = pool else { return job() };
+    let (value, raised) = pool.install(|| (job(), no_exception()));
+    raised_number(raised, ());
+    value
+}
 
 /// Computes without the GIL. Python handles signals on the thread that called, so what is `slow` is computed on another one, while this
 /// one listens, and sets the flag of the computation where a handler raises: KeyboardInterrupt comes out, after the call where the computation had come to its end. What
@@ -27,12 +55,12 @@ pub fn interruptible<T: Send>(
     // of a call before this one
     py.check_signals()?;
     if !slow {
-        return py.detach(job).or_raise();
+        return free(py, job).or_raise();
     }
     py.detach(|| {
         thread::scope(|scope| {
             let (send, receive) = channel();
-            let worker = scope.spawn(move || send.send((job(), no_exception())).is_ok());
+            let worker = scope.spawn(move || send.send((on_own_threads(job), no_exception())).is_ok());
             let mut raised = None;
             loop {
                 match receive.recv_timeout(LISTEN) {
@@ -74,24 +102,18 @@ fn signal_again() -> PyResult<()> {
 
 /// Listens for Ctrl-C, and to a report of progress that may end a call, between two problems.
 pub struct Listener {
-    progress: Option<Py<PyAny>>,
+    progress: Option<Function>,
     raised: Option<PyErr>,
 }
 
 impl Listener {
-    pub fn new(progress: Option<Py<PyAny>>) -> Listener {
+    pub fn new(progress: Option<Function>) -> Listener {
         Listener { progress, raised: None }
     }
 
     pub fn goes_on(&mut self, done: impl for<'py> pyo3::call::PyCallArgs<'py>) -> ControlFlow<()> {
-        let asked = Python::attach(|py| {
-            py.check_signals()?;
-            match &self.progress {
-                Some(progress) => Ok(progress.call1(py, done)?.extract::<bool>(py).unwrap_or(true)),
-                None => Ok(true),
-            }
-        });
-        match asked {
+        let signals = Python::attach(|py| py.check_signals());
+        match signals.and_then(|()| goes_on(self.progress.as_ref(), done)) {
             Ok(true) => ControlFlow::Continue(()),
             Ok(false) => ControlFlow::Break(()),
             Err(error) => {

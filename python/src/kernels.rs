@@ -10,8 +10,10 @@ use viscocontact::{self as vc, Axis};
 use crate::arrays::{Array, field, to_array};
 use crate::errors::{Kept, OrRaise};
 use crate::grid::Grid;
+use crate::interrupt::free;
 use crate::materials::Material;
 use crate::recipe::Recipe;
+use crate::used::Function;
 
 /// The axis of an index, 0 or 1.
 pub fn axis(index: usize) -> PyResult<Axis> {
@@ -53,9 +55,6 @@ makers! {Layer, py:
         vc::Layer::bonded_to_material(thickness, &layer.get().material, &base.get().material);
 }
 
-#[pymethods]
-impl Layer {}
-
 getters! {Layer.layer, of:
     /// Thickness [m].
     thickness: f64 = of.thickness();
@@ -90,70 +89,68 @@ makers! {InfluenceKernel, py:
     /// A half-space, by Love's coefficients.
     half_space(grid: Bound<'_, Grid>) = {
         let on = &grid.get().0;
-        py.detach(|| vc::InfluenceKernel::half_space(on))
+        free(py, || vc::InfluenceKernel::half_space(on))
     };
 
     /// A half-space that is periodic along both axes, the grid being one period.
     periodic(grid: Bound<'_, Grid>) = {
         let on = &grid.get().0;
-        py.detach(|| vc::InfluenceKernel::periodic(on))
+        free(py, || vc::InfluenceKernel::periodic(on))
     };
 
     /// A half-space that is periodic along one axis (0 or 1); displacements are measured from the surface at the distance `datum` [m].
     periodic_along(grid: Bound<'_, Grid>, along: usize, datum: f64) = {
         let (on, axis) = (&grid.get().0, axis(along)?);
-        py.detach(|| vc::InfluenceKernel::periodic_along(on, axis, datum))
+        free(py, || vc::InfluenceKernel::periodic_along(on, axis, datum))
     };
 
     /// A line contact in plane strain, on a grid of n × 1 cells; displacements are measured from the surface at the distance `datum` [m].
     line(grid: Bound<'_, Grid>, datum: f64) = {
         let on = &grid.get().0;
-        py.detach(|| vc::InfluenceKernel::line(on, datum))
+        free(py, || vc::InfluenceKernel::line(on, datum))
     };
 
     /// A layer, loaded on the grid alone.
     layer(grid: Bound<'_, Grid>, layer: Bound<'_, Layer>) = {
         let (on, of) = (&grid.get().0, layer.get().layer);
-        py.detach(|| vc::InfluenceKernel::layer(on, of))
+        free(py, || vc::InfluenceKernel::layer(on, of))
     };
 
     /// A layer that is periodic along both axes.
     layer_periodic(grid: Bound<'_, Grid>, layer: Bound<'_, Layer>) = {
         let (on, of) = (&grid.get().0, layer.get().layer);
-        py.detach(|| vc::InfluenceKernel::layer_periodic(on, of))
+        free(py, || vc::InfluenceKernel::layer_periodic(on, of))
     };
 
     /// A layer in line contact, on a grid of n × 1 cells; on a half-space, with a `datum` [m].
     #[pyo3(signature = (grid, layer, datum=None))]
     layer_line(grid: Bound<'_, Grid>, layer: Bound<'_, Layer>, datum: Option<f64>) = {
         let (on, of) = (&grid.get().0, layer.get().layer);
-        py.detach(|| vc::InfluenceKernel::layer_line(on, of, datum))
+        free(py, || vc::InfluenceKernel::layer_line(on, of, datum))
     };
 
     /// A layer that is periodic along one axis (0 or 1).
     #[pyo3(signature = (grid, layer, along, datum=None))]
     layer_periodic_along(grid: Bound<'_, Grid>, layer: Bound<'_, Layer>, along: usize, datum: Option<f64>) = {
         let (on, of, axis) = (&grid.get().0, layer.get().layer, axis(along)?);
-        py.detach(|| vc::InfluenceKernel::layer_periodic_along(on, of, axis, datum))
+        free(py, || vc::InfluenceKernel::layer_periodic_along(on, of, axis, datum))
     };
 
     /// Your own body: `coefficient(i, j)` [m] is the displacement, over the compliance, of a cell under a unit pressure on the cell
     /// that is i and j cells away.
-    from_coefficients(grid: Bound<'_, Grid>, coefficient: Py<PyAny>) = {
+    from_coefficients(grid: Bound<'_, Grid>, coefficient: Function) = {
         let (on, kept) = (&grid.get().0, Kept::default());
-        let value = |i: isize, j: isize| Python::attach(|py| coefficient.call1(py, (i, j))?.extract(py));
-        let call = |i: isize, j: isize| kept.number(value(i, j), f64::NAN);
-        let kernel = py.detach(|| vc::InfluenceKernel::from_coefficients(on, call));
+        let call = |i: isize, j: isize| kept.number(coefficient.call((i, j)), f64::NAN);
+        let kernel = free(py, || vc::InfluenceKernel::from_coefficients(on, call));
         kept.raise_or(Ok(kernel))?
     };
 
     /// Your own body, periodic along both axes: `compliance(q1, q2)` [m] is the displacement, over the compliance, under a wave of unit
     /// pressure of these wave numbers [rad/m].
-    from_spectrum(grid: Bound<'_, Grid>, compliance: Py<PyAny>) = {
+    from_spectrum(grid: Bound<'_, Grid>, compliance: Function) = {
         let (on, kept) = (&grid.get().0, Kept::default());
-        let value = |q1: f64, q2: f64| Python::attach(|py| compliance.call1(py, (q1, q2))?.extract(py));
-        let call = |q1: f64, q2: f64| kept.number(value(q1, q2), f64::NAN);
-        let kernel = py.detach(|| vc::InfluenceKernel::from_spectrum(on, call));
+        let call = |q1: f64, q2: f64| kept.number(compliance.call((q1, q2)), f64::NAN);
+        let kernel = free(py, || vc::InfluenceKernel::from_spectrum(on, call));
         kept.raise_or(Ok(kernel))?
     };
 }
@@ -174,7 +171,7 @@ impl InfluenceKernel {
         let cells = self.kernel.grid().cells();
         let pressure = field("pressure", pressure, cells)?;
         let convolve = |values: &mut [f64]| {
-            let result = py.detach(|| {
+            let result = free(py, || {
                 self.kernel.workspace().and_then(|mut work| self.kernel.convolve(&pressure, values, &mut work))
             });
             result.or_raise()

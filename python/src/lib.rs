@@ -30,7 +30,6 @@ mod reports;
 mod rheology;
 mod run;
 mod scene;
-mod scratch;
 mod shapes;
 mod sheared;
 mod sliding;
@@ -39,6 +38,7 @@ mod states_contact;
 mod stress;
 mod study;
 mod temperature;
+mod used;
 mod writers;
 
 use pyo3::prelude::*;
@@ -49,74 +49,50 @@ mod _native {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        // where there is no fork, there is nothing to register
+        if let Ok(register) = module.py().import("os")?.getattr("register_at_fork") {
+            register.call((), Some(&dict! { module.py(); "after_in_child": module.getattr("_forked")? }))?;
+        }
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 
     #[pymodule_export]
-    use crate::analytic::{
-        AdhesiveCylinder, AdhesivePunch, AdhesiveWave, Dmt, GrowingSphere, Jkr, MaugisDugdale, OpeningEdge, hertz,
-        hertz_ellipse, persson_friction, rigid_punch, rolling_cylinder,
+    use crate::{
+        analytic::{
+            AdhesiveCylinder, AdhesivePunch, AdhesiveWave, Dmt, GrowingSphere, Jkr, MaugisDugdale, OpeningEdge, hertz,
+            hertz_ellipse, persson_friction, rigid_punch, rolling_cylinder,
+        },
+        attraction::Attraction,
+        contact::{Snapshot, ViscoelasticContact},
+        curves::{Curve, Experiment, Recording},
+        elastic::ElasticContact,
+        errors::{Cancelled, ConvergenceError},
+        fields::Fields,
+        fits::{Estimate, Fit, write_fits},
+        friction::{FrictionContact, FrictionLimit, ShearLoad, Slides},
+        grid::Grid,
+        held::Times,
+        identify::{Identification, drainage_or_creep, ranked},
+        interrupt::forked,
+        kernels::{InfluenceKernel, Layer},
+        loads::{Load, LoadHistory},
+        maps::HeightMap,
+        materials::{Material, Tension, published_materials},
+        measured::{MasterCurve, Measurements},
+        observe::patches,
+        pictures::{Animation, Picture},
+        recipe::again,
+        reports::{BodyState, StepReport},
+        rheology::Rheology,
+        run::{Run, Sample},
+        scene::memory,
+        shapes::Shape,
+        sliding::{SlidingReport, SlidingTable, SteadySliding},
+        states::ElasticStates,
+        states_contact::StatesContact,
+        stress::{EnergyBalance, StressHistory, SubsurfaceStress},
+        study::Study,
+        temperature::{TemperatureHistory, TimeTemperature},
+        writers::{CsvHistory, FrameSeries},
     };
-    #[pymodule_export]
-    use crate::attraction::Attraction;
-    #[pymodule_export]
-    use crate::contact::{Snapshot, ViscoelasticContact};
-    #[pymodule_export]
-    use crate::curves::{Curve, Experiment, Recording};
-    #[pymodule_export]
-    use crate::elastic::ElasticContact;
-    #[pymodule_export]
-    use crate::errors::{Cancelled, ConvergenceError};
-    #[pymodule_export]
-    use crate::fields::Fields;
-    #[pymodule_export]
-    use crate::fits::{Estimate, Fit, write_fits};
-    #[pymodule_export]
-    use crate::friction::{FrictionContact, FrictionLimit, ShearLoad, Slides};
-    #[pymodule_export]
-    use crate::grid::Grid;
-    #[pymodule_export]
-    use crate::held::Times;
-    #[pymodule_export]
-    use crate::identify::{Identification, drainage_or_creep, ranked};
-    #[pymodule_export]
-    use crate::kernels::{InfluenceKernel, Layer};
-    #[pymodule_export]
-    use crate::loads::{Load, LoadHistory};
-    #[pymodule_export]
-    use crate::maps::HeightMap;
-    #[pymodule_export]
-    use crate::materials::{Material, Tension, published_materials};
-    #[pymodule_export]
-    use crate::measured::{MasterCurve, Measurements};
-    #[pymodule_export]
-    use crate::observe::patches;
-    #[pymodule_export]
-    use crate::pictures::{Animation, Picture};
-    #[pymodule_export]
-    use crate::recipe::again;
-    #[pymodule_export]
-    use crate::reports::{BodyState, StepReport};
-    #[pymodule_export]
-    use crate::rheology::Rheology;
-    #[pymodule_export]
-    use crate::run::{Run, Sample};
-    #[pymodule_export]
-    use crate::scene::memory;
-    #[pymodule_export]
-    use crate::shapes::Shape;
-    #[pymodule_export]
-    use crate::sliding::{SlidingReport, SlidingTable, SteadySliding};
-    #[pymodule_export]
-    use crate::states::ElasticStates;
-    #[pymodule_export]
-    use crate::states_contact::StatesContact;
-    #[pymodule_export]
-    use crate::stress::{EnergyBalance, StressHistory, SubsurfaceStress};
-    #[pymodule_export]
-    use crate::study::Study;
-    #[pymodule_export]
-    use crate::temperature::{TemperatureHistory, TimeTemperature};
-    #[pymodule_export]
-    use crate::writers::{CsvHistory, FrameSeries};
 }

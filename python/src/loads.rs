@@ -9,7 +9,9 @@ use viscocontact::load::{self as ld, LoadHistory as History};
 
 use crate::arrays::column;
 use crate::errors::{OrRaise, no_violation, nothing_raised};
-use crate::recipe::Recipe;
+use crate::interrupt::free;
+use crate::recipe::{Recipe, Value};
+use crate::used::Function;
 
 /// The load on a rigid body at the end of a step: a force, an approach, or a spring that drives it.
 ///
@@ -82,10 +84,6 @@ impl Load {
     fn spring(py: Python<'_>, stiffness: f64, drive: f64, at: Tilts, tilt: Tilts) -> PyResult<Load> {
         Load::of(py, ld::Load::Spring { stiffness, drive, tilt: tilts(at, tilt)? })
     }
-
-    fn __eq__(&self, other: &Load) -> bool {
-        self.load == other.load
-    }
 }
 
 made_by_calls!(Load);
@@ -118,7 +116,7 @@ fn rows(table: &Bound<'_, PyAny>) -> PyResult<Vec<(f64, ld::Load)>> {
 
 makers! {LoadHistory, py:
     /// Loads at ascending times, linear in between, from a sequence of (time [s], load). Two rows of the same time are a jump.
-    table(table: Bound<'_, PyAny>) = ld::PiecewiseLinear::new(&rows(&table)?);
+    table(table: Value<'_>) = ld::PiecewiseLinear::new(&rows(&table)?);
 
     /// A load held from t = 0 on.
     held(load: Bound<'_, Load>) = ld::StepLoad::new(load.get().load);
@@ -136,7 +134,7 @@ makers! {LoadHistory, py:
         ld::Sinusoid::about(mean.get().load, amplitude, frequency);
 
     /// A sequence of (time [s], load) that repeats without end.
-    periodic(table: Bound<'_, PyAny>) = ld::Periodic::new(&rows(&table)?);
+    periodic(table: Value<'_>) = ld::Periodic::new(&rows(&table)?);
 
     /// The first load for the part `duty` of each `period` [s], then the second.
     #[pyo3(signature = (first, second, period, duty=0.5))]
@@ -152,36 +150,38 @@ makers! {LoadHistory, py:
         ld::Periodic::sawtooth(start.get().load, end.get().load, period);
 
     /// Forces [N] at times [s], two arrays, linear in between.
-    forces(times: Bound<'_, PyAny>, forces: Bound<'_, PyAny>) = of_columns(&times, "forces", &forces, ld::Load::force)?;
+    forces(times: Value<'_>, forces: Value<'_>) = of_columns(&times, "forces", &forces, ld::Load::force)?;
 
     /// Approaches [m] at times [s], two arrays, linear in between.
-    approaches(times: Bound<'_, PyAny>, approaches: Bound<'_, PyAny>) =
+    approaches(times: Value<'_>, approaches: Value<'_>) =
         of_columns(&times, "approaches", &approaches, ld::Load::approach)?;
 
+}
+
+#[pymethods]
+impl LoadHistory {
     /// A function of time [s] that returns a `Load`, smooth but for corners at `breakpoints` [s], where steps end.
     ///
-    /// A run asks for loads of its whole time before the first step, for the greatest ones: the function must be defined up to `until` and
+    /// A run asks for loads of its whole time before the first step, for the maximum ones: the function must be defined up to `until` and
     /// depend on the time alone. (A load that depends on the contact is for a loop over `step`.) An exception comes out of the step that
     /// needed the load, in a run often the first.
+    #[staticmethod]
     #[pyo3(signature = (load, breakpoints=vec![]))]
-    function(load: Py<PyAny>, breakpoints: Vec<f64>) = {
-        let function = load.clone_ref(py);
+    fn function(py: Python<'_>, load: Function, breakpoints: Vec<f64>) -> PyResult<LoadHistory> {
+        let function = load.clone();
         let call = move |t: f64| {
             Python::attach(|py| {
-                let load = function.call1(py, (t,))?;
-                let load = load.bind(py);
+                let load = function.0.bind(py).call1((t,))?;
                 load.cast::<Load>().map(|load| load.get().load).map_err(|_| {
                     let class = load.get_type();
                     PyTypeError::new_err(format!("the load history returned {class} at {t} s, not a Load"))
                 })
             })
         };
-        ld::FnHistory::fallible(call).with_breakpoints(&breakpoints)
-    };
-}
+        let made = ld::FnHistory::fallible(call).with_breakpoints(&breakpoints).or_raise()?;
+        Ok(LoadHistory::by(Recipe::new(py, "function", (load.clone(), breakpoints))?.calling([load]), made))
+    }
 
-#[pymethods]
-impl LoadHistory {
     /// The load at a time [s].
     fn at(&self, py: Python<'_>, t: f64) -> PyResult<Load> {
         let load = self.history.at(t);
@@ -193,7 +193,7 @@ impl LoadHistory {
     /// first violation.
     fn check(&self, py: Python<'_>, times: &Bound<'_, PyAny>) -> PyResult<()> {
         let times = column("times", times)?;
-        let verdict = py.detach(|| ld::laws::all(&*self.history, &times));
+        let verdict = free(py, || ld::laws::all(&*self.history, &times));
         no_violation(self.history.failure(), verdict)
     }
 }
@@ -214,32 +214,40 @@ fn of_columns(
     Ok(ld::PiecewiseLinear::new(&times.into_iter().zip(values.into_iter().map(load)).collect::<Vec<_>>()))
 }
 
-/// Any history: a `LoadHistory`, a load that is held, a sequence of (time, load), or a function.
+impl LoadHistory {
+    /// Any history: a `LoadHistory`, a load that is held, a sequence of (time, load), or a function.
+    pub fn any<'py>(given: &Bound<'py, PyAny>) -> PyResult<Bound<'py, LoadHistory>> {
+        let py = given.py();
+        if let Ok(history) = given.cast::<LoadHistory>() {
+            return Ok(history.clone());
+        }
+        let made = if let Ok(load) = given.cast::<Load>() {
+            LoadHistory::held(py, load.clone())
+        } else if given.is_callable() {
+            LoadHistory::function(py, given.extract()?, vec![])
+        } else {
+            let given: Value<'_> = given.extract()?;
+            let needed = "load: a Load, a LoadHistory, a sequence of (time, Load), or a function of time that returns a Load is needed";
+            rows(&given).map_err(|_| PyTypeError::new_err(needed))?;
+            LoadHistory::table(py, given)
+        };
+        Bound::new(py, made?)
+    }
+}
+
+/// The history of the crate.
 pub fn history(given: &Bound<'_, PyAny>) -> PyResult<Arc<dyn History>> {
-    let py = given.py();
-    if let Ok(history) = given.cast::<LoadHistory>() {
-        return Ok(Arc::clone(&history.get().history));
-    }
-    if let Ok(load) = given.cast::<Load>() {
-        return Ok(Arc::new(ld::StepLoad::new(load.get().load).or_raise()?));
-    }
-    if given.is_callable() {
-        return Ok(LoadHistory::function(py, given.clone().unbind(), vec![])?.history);
-    }
-    let needed =
-        "load: a Load, a LoadHistory, a sequence of (time, Load), or a function of time that returns a Load is needed";
-    let rows = rows(given).map_err(|_| PyTypeError::new_err(needed))?;
-    Ok(Arc::new(ld::PiecewiseLinear::new(&rows).or_raise()?))
+    Ok(Arc::clone(&LoadHistory::any(given)?.get().history))
 }
 
 /// The histories of a run: one, or a sequence with one for each body.
-pub fn histories(given: &Bound<'_, PyAny>) -> PyResult<Vec<Arc<dyn History>>> {
-    let one = match history(given) {
+pub fn histories<'py>(given: &Bound<'py, PyAny>) -> PyResult<Vec<Bound<'py, LoadHistory>>> {
+    let one = match LoadHistory::any(given) {
         Ok(one) => return Ok(vec![one]),
         Err(error) => error,
     };
     let each = given.extract::<Vec<Bound<'_, PyAny>>>().ok().filter(|each| !each.is_empty());
-    let each = each.and_then(|each| each.iter().map(history).collect::<PyResult<_>>().ok());
+    let each = each.and_then(|each| each.iter().map(LoadHistory::any).collect::<PyResult<_>>().ok());
     each.ok_or(one)
 }
 
@@ -248,7 +256,11 @@ pub fn loads(given: &Bound<'_, PyAny>) -> PyResult<Vec<ld::Load>> {
     if let Ok(load) = given.cast::<Load>() {
         return Ok(vec![load.get().load]);
     }
-    let needed = "load: a Load is needed, or a sequence with one for each body";
-    let loads: Vec<Bound<'_, Load>> = given.extract().map_err(|_| PyTypeError::new_err(needed))?;
+    let needed = || {
+        PyTypeError::new_err(format!(
+            "load: Load.force or Load.approach of a number is needed, or a sequence with one for each body, not {given}"
+        ))
+    };
+    let loads: Vec<Bound<'_, Load>> = given.extract().map_err(|_| needed())?;
     Ok(loads.iter().map(|load| load.get().load).collect())
 }

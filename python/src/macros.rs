@@ -9,8 +9,8 @@ macro_rules! getters {
             $(
                 $(#[$doc])*
                 #[getter]
-                fn $name(&self) -> PyResult<$type> {
-                    let $of = self.$get()?;
+                fn $name(slf: crate::used::Shared<'_, Self>) -> PyResult<$type> {
+                    let $of = slf.$get()?;
                     Ok($value)
                 }
             )*
@@ -45,7 +45,8 @@ macro_rules! makers {
                 #[staticmethod]
                 pub fn $name($py: Python<'_>, $($arg: $type),*) -> PyResult<$class> {
                     let made = $made.or_raise()?;
-                    Ok($class::by(crate::recipe::Recipe::new($py, stringify!($name), ($($arg,)*))?, made))
+                    let recipe = crate::recipe::Recipe::new($py, stringify!($name), ($($arg,)*))?;
+                    Ok($class::by(recipe, made))
                 }
             )*
         }
@@ -61,17 +62,76 @@ macro_rules! dict {
     }};
 }
 
-/// The methods of a class whose objects are made again by the call that made them.
+/// The methods of a class whose objects are made again by the call that made them, which the field `recipe` has.
 macro_rules! made_by_calls {
+    ($class:ident) => {
+        impl $class {
+            fn recipe(&self, _py: Python<'_>) -> PyResult<&crate::recipe::Recipe> {
+                Ok(&self.recipe)
+            }
+        }
+
+        calls! {$class}
+
+        #[pymethods]
+        impl $class {
+            fn __traverse__(&self, visit: pyo3::gc::PyVisit<'_>) -> crate::used::Traversed {
+                self.recipe.traverse(&visit)
+            }
+        }
+    };
+}
+
+/// The same by a method `recipe`.
+macro_rules! calls {
     ($class:ident) => {
         #[pymethods]
         impl $class {
             fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
-                slf.get().recipe.repr(&slf.get_type())
+                slf.get().recipe(slf.py())?.repr(&slf.get_type())
             }
 
             fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<crate::recipe::Reduced<'py>> {
-                slf.get().recipe.reduce(slf.get_type())
+                slf.get().recipe(slf.py())?.reduce(slf.get_type())
+            }
+
+            fn __eq__(slf: &Bound<'_, Self>, other: &Bound<'_, PyAny>) -> PyResult<bool> {
+                let key = slf.get().recipe(slf.py())?.key(slf.get_type())?;
+                let Ok(other) = other.cast::<Self>() else { return Ok(false) };
+                key.eq(other.get().recipe(slf.py())?.key(other.get_type())?)
+            }
+
+            fn __hash__(slf: &Bound<'_, Self>) -> PyResult<isize> {
+                slf.get().recipe(slf.py())?.key(slf.get_type())?.hash()
+            }
+        }
+    };
+}
+
+/// The methods of a class whose objects are numbers: pickled as bytes, and equal if their numbers are.
+macro_rules! numbers {
+    ($class:ident) => {
+        #[pymethods]
+        impl $class {
+            /// The numbers of a pickle.
+            #[staticmethod]
+            fn _of_bytes(bytes: &[u8]) -> PyResult<$class> {
+                postcard::from_bytes(bytes)
+                    .map($class)
+                    .map_err(|error| pyo3::exceptions::PyValueError::new_err(error.to_string()))
+            }
+
+            #[allow(clippy::type_complexity)]
+            fn __reduce__<'py>(
+                slf: &Bound<'py, Self>,
+            ) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, pyo3::types::PyBytes>,))> {
+                let bytes = postcard::to_allocvec(&slf.get().0);
+                let bytes = bytes.map_err(|error| pyo3::exceptions::PyValueError::new_err(error.to_string()))?;
+                Ok((slf.get_type().getattr("_of_bytes")?, (pyo3::types::PyBytes::new(slf.py(), &bytes),)))
+            }
+
+            fn __eq__(&self, other: &$class) -> bool {
+                self.0 == other.0
             }
         }
     };

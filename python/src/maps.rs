@@ -4,15 +4,16 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use pyo3::exceptions::PyTypeError;
+use pyo3::exceptions::{PyTypeError, PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use viscocontact::geometry::{self as geo, Anisotropy, Form, LengthUnit, RoughSpec, Roughness};
 use viscocontact::{FileError, TextFormat};
 
-use crate::arrays::{Array, mapped, never, plane, table, to_array};
+use crate::arrays::{ALL, Array, mapped, never, plane, table, to_array};
 use crate::errors::{OrRaise, choice, raise};
-use crate::grid::{Grid, PerAxis};
+use crate::grid::{Count, Grid, PerAxis, count};
+use crate::interrupt::free;
 use crate::shapes::Shape;
 
 /// Heights of a surface on a regular grid of points, measured or computed; a `Shape`.
@@ -39,13 +40,19 @@ use crate::shapes::Shape;
 pub struct HeightMap(Arc<geo::HeightMap>);
 
 impl HeightMap {
+    /// Refuses a map of which nothing is known.
+    fn known(map: geo::HeightMap) -> PyResult<Arc<geo::HeightMap>> {
+        let [n1, n2] = map.cells();
+        if map.missing() < n1 * n2 { Ok(Arc::new(map)) } else { Err(PyValueError::new_err("heights: none is known")) }
+    }
+
     /// A map that is made again from its heights, whatever its file was.
     fn made(py: Python<'_>, map: geo::HeightMap) -> PyResult<Py<HeightMap>> {
         Py::new(py, HeightMap::parts(py, map)?)
     }
 
     fn parts(py: Python<'_>, map: geo::HeightMap) -> PyResult<PyClassInitializer<HeightMap>> {
-        let map = Arc::new(map);
+        let map = HeightMap::known(map)?;
         let center = map.center();
         let shape = if center == [0.0; 2] {
             let heights = to_array(py, map.heights().to_vec(), &map.cells())?;
@@ -65,7 +72,7 @@ impl HeightMap {
         change: impl FnOnce(geo::HeightMap) -> viscocontact::Result<geo::HeightMap> + Send,
     ) -> PyResult<Py<HeightMap>> {
         let (py, map) = (slf.py(), (*slf.get().0).clone());
-        let map = Arc::new(py.detach(|| change(map)).or_raise()?);
+        let map = HeightMap::known(free(py, || change(map)).or_raise()?)?;
         let shape = Shape::made(py, maker, arguments, Arc::clone(&map) as _)?;
         Py::new(py, PyClassInitializer::from(shape).add_subclass(HeightMap(map)))
     }
@@ -83,25 +90,34 @@ impl HeightMap {
     ) -> PyResult<PyClassInitializer<HeightMap>> {
         let (heights, cells) = plane("heights", heights)?;
         let map = geo::HeightMap::new(cells, lengths.0, heights).or_raise()?;
+        if let Err(doubt) = squared(&map, lengths.0) {
+            let text = std::ffi::CString::new(doubt.value(py).to_string())?;
+            PyErr::warn(py, &py.get_type::<PyUserWarning>(), &text, 1)?;
+        }
         HeightMap::parts(py, if periodic { map.periodic() } else { map })
     }
 
     /// Reads a map: SDF, SUR, PRO, GSF and X3P files by their content, in metres; NPY files and text (matrices, or with `points`
-    /// lines of x, y and height) need `unit`, and matrices `lengths` [m].
+    /// lines of x, y and height) need `unit`, and matrices `lengths` [m] along x1 and x2.
     ///
-    /// Raises OSError if the file cannot be read or understood, and says where.
+    /// `orientation` tells how a matrix lies, of NPY files and of text alike: "array" (default) as every array of this package, line i at the place i
+    /// along x1, which `numpy.save` and `numpy.savetxt` write; "picture" as programs of instruments export it, a line along x1, the first line at the
+    /// maximum x2.
+    ///
+    /// Raises OSError if the file cannot be read or understood, and says where; ValueError if the cells are square with `lengths` exchanged alone.
     ///
     /// >>> HeightMap.read("no_such_file.sdf")
     /// Traceback (most recent call last):
     /// FileNotFoundError: ...
     #[staticmethod]
-    #[pyo3(signature = (path, *, lengths=None, unit=None, points=false, profile=false, decimal_comma=None, missing_height=None))]
+    #[pyo3(signature = (path, *, lengths=None, unit=None, orientation="array", points=false, profile=false, decimal_comma=None, missing_height=None))]
     #[allow(clippy::too_many_arguments)]
     fn read(
         py: Python<'_>,
         path: PathBuf,
         lengths: Option<PerAxis<f64>>,
         unit: Option<&str>,
+        orientation: &str,
         points: bool,
         profile: bool,
         decimal_comma: Option<bool>,
@@ -119,25 +135,24 @@ impl HeightMap {
         let lengths = lengths.map(|lengths| lengths.0);
         let needs = |what: &str| PyTypeError::new_err(format!("{}: this kind of file needs {what}", path.display()));
         let map = match ending.as_str() {
-            "sdf" | "sur" | "pro" | "x3p" => py.detach(|| geo::HeightMap::read(&path)),
+            "sdf" | "sur" | "pro" | "x3p" => free(py, || geo::HeightMap::read(&path)),
             "gsf" => {
                 let file = opened(&path)?;
-                py.detach(|| geo::HeightMap::from_gsf(file, unit))
+                free(py, || geo::HeightMap::from_gsf(file, unit))
             }
             _ => {
                 let file = opened(&path)?;
                 let unit = unit.ok_or_else(|| needs("the unit of its numbers, such as unit=\"um\""))?;
                 if points {
-                    py.detach(|| geo::HeightMap::from_xyz(file, unit, unit, format))
+                    free(py, || geo::HeightMap::from_xyz(file, unit, unit, format))
                 } else if profile {
-                    py.detach(|| geo::HeightMap::from_profile(file, unit, unit, format))
+                    free(py, || geo::HeightMap::from_profile(file, unit, unit, format))
                 } else {
                     let lengths = lengths.ok_or_else(|| needs("the lengths of its sides in m, as lengths=(l1, l2)"))?;
-                    if ending == "npy" {
-                        py.detach(|| geo::HeightMap::from_npy(file, lengths, unit))
-                    } else {
-                        py.detach(|| geo::HeightMap::from_text(file, lengths, unit, format))
-                    }
+                    let is_picture = choice("orientation", orientation, &[("array", false), ("picture", true)])?;
+                    let map = free(py, || matrix(file, &ending, lengths, (unit, format), is_picture)).or_raise()?;
+                    squared(&map, lengths)?;
+                    Ok(map)
                 }
             }
         };
@@ -148,7 +163,7 @@ impl HeightMap {
     #[staticmethod]
     fn from_points(py: Python<'_>, points: &Bound<'_, PyAny>) -> PyResult<Py<HeightMap>> {
         let points: Vec<[f64; 3]> = table("points", points)?;
-        HeightMap::made(py, py.detach(|| geo::HeightMap::from_points(&points)).or_raise()?)
+        HeightMap::made(py, free(py, || geo::HeightMap::from_points(&points)).or_raise()?)
     }
 
     /// The heights [m], of the shape of the map; NaN where one is missing.
@@ -212,14 +227,14 @@ impl HeightMap {
 
     /// The map interpolated at the cells of a grid, and the error of that: rms [m], greatest [m], rms over the rms height.
     fn resampled(&self, py: Python<'_>, grid: &Grid) -> PyResult<(Py<HeightMap>, (f64, f64, f64))> {
-        let new = py.detach(|| self.0.resampled(&grid.0)).or_raise()?;
+        let new = free(py, || self.0.resampled(&grid.0)).or_raise()?;
         let error = (new.error.rms, new.error.max, new.error.of_rms_height);
         Ok((HeightMap::made(py, new.map)?, error))
     }
 
-    /// Mean, rms height, skewness, kurtosis, rms slope, rms slopes along x1 and x2, and rms curvature, in SI units.
+    /// A dict of "mean", "rms_height" [m], "skewness", "kurtosis", "rms_slope", "rms_slopes" along x1 and x2, and "rms_curvature" [1/m].
     fn statistics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let of = py.detach(|| self.0.statistics()).or_raise()?;
+        let of = free(py, || self.0.statistics()).or_raise()?;
         Ok(dict! { py;
             "mean": of.mean,
             "rms_height": of.rms_height,
@@ -232,18 +247,18 @@ impl HeightMap {
     }
 
     /// The heights [m] in the middle of so many bins, and their density [1/m], as rows.
-    fn height_distribution<'py>(&self, py: Python<'py>, bins: usize) -> PyResult<Array<'py>> {
-        rows(py, py.detach(|| self.0.height_distribution(bins)).or_raise()?)
+    fn height_distribution<'py>(&self, py: Python<'py>, bins: Count) -> PyResult<Array<'py>> {
+        rows(py, free(py, || self.0.height_distribution(bins.0)).or_raise()?)
     }
 
     /// Wave numbers [rad/m] and the radial mean of the power spectral density of the heights [m⁴], as rows.
     fn power_spectrum<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
-        rows(py, py.detach(|| self.0.power_spectrum()).or_raise()?)
+        rows(py, free(py, || self.0.power_spectrum()).or_raise()?)
     }
 
     /// The height at `x1` along the line x2 = `x2` [m], NaN where there is none: a float or an array of the shape of `x1`.
     fn height_at<'py>(&self, x1: &Bound<'py, PyAny>, x2: f64) -> PyResult<Bound<'py, PyAny>> {
-        mapped("x1", x1, |x1| self.0.height_at(x1, x2).unwrap_or(f64::NAN), never)
+        mapped("x1", x1, ALL, |x1| self.0.height_at(x1, x2).unwrap_or(f64::NAN), never)
     }
 
     /// The slopes along x1 and x2 at a point [m]; None where there is no height.
@@ -257,7 +272,7 @@ impl HeightMap {
         let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
         let kind = choice("ending of the path", &ending, &kinds)?;
         let file = File::create(&path)?;
-        py.detach(|| match kind {
+        free(py, || match kind {
             0 => self.0.write_sdf(file),
             1 => self.0.write_gsf(file),
             _ => self.0.write_npy(file),
@@ -287,14 +302,14 @@ impl HeightMap {
         roll_off: Option<f64>,
         anisotropy: Option<(f64, f64)>,
         period: Option<PerAxis<f64>>,
-        seed: u64,
+        #[pyo3(from_py_with = count)] seed: usize,
     ) -> PyResult<Py<HeightMap>> {
         let roughness = match (rms_slope, rms_height) {
             (Some(slope), None) => Roughness::RmsSlope(slope),
             (None, Some(height)) => Roughness::RmsHeight(height),
             _ => return Err(PyTypeError::new_err("give rms_slope or rms_height, one of them")),
         };
-        let mut spec = RoughSpec::new(longest, shortest, roughness).with_seed(seed).with_hurst(hurst);
+        let mut spec = RoughSpec::new(longest, shortest, roughness).with_seed(seed as u64).with_hurst(hurst);
         if let Some(roll_off) = roll_off {
             spec = spec.with_roll_off(roll_off);
         }
@@ -303,7 +318,7 @@ impl HeightMap {
         }
         let on = &grid.get().0;
         let period = period.map(|period| period.0);
-        let rough = py.detach(|| match period {
+        let rough = free(py, || match period {
             Some(period) => geo::Rough::windowed(on, spec, period),
             None => geo::Rough::new(on, spec),
         });
@@ -337,6 +352,39 @@ getters! {HeightMap, of:
     /// The grid whose cells have the points of the map as their centres.
     grid: Grid = Grid(of.grid());
 }
+
+/// A map of a matrix: as an array of this package, whose entry (i, j) is at the places i along x1 and j along x2; or as a picture, whose lines are
+/// along x1, the first at the maximum x2. NPY files are read as the one, texts as the other, and turned where they are not.
+fn matrix(
+    file: File,
+    ending: &str,
+    [l1, l2]: [f64; 2],
+    (unit, format): (LengthUnit, TextFormat),
+    is_picture: bool,
+) -> viscocontact::Result<geo::HeightMap> {
+    match (ending, is_picture) {
+        ("npy", false) => geo::HeightMap::from_npy(file, [l1, l2], unit),
+        ("npy", true) => Ok(geo::HeightMap::from_npy(file, [l2, l1], unit)?.flipped([true, false]).transposed()),
+        (_, false) => Ok(geo::HeightMap::from_text(file, [l2, l1], unit, format)?.transposed().flipped([true, false])),
+        (_, true) => geo::HeightMap::from_text(file, [l1, l2], unit, format),
+    }
+}
+
+/// Refuses sides that make squares of the cells if they are exchanged, and only then.
+fn squared(map: &geo::HeightMap, [l1, l2]: [f64; 2]) -> PyResult<()> {
+    let [n1, n2] = map.cells().map(|n| n as f64);
+    let is_square = |a: f64, b: f64| (a / n1 / (b / n2) - 1.0).abs() < SQUARE;
+    if is_square(l1, l2) || !is_square(l2, l1) {
+        return Ok(());
+    }
+    Err(PyValueError::new_err(format!(
+        "lengths = ({l1}, {l2}) are those of the other axes: the map has {n1} points along x1 and {n2} along x2; give lengths=({l2}, {l1}), or \
+         the other orientation, \"array\" or \"picture\""
+    )))
+}
+
+/// Sides of a cell that differ by less, relative, are equal.
+const SQUARE: f64 = 1e-3;
 
 fn opened(path: &Path) -> PyResult<File> {
     File::open(path).map_err(|error| {

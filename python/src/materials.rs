@@ -7,8 +7,9 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use viscocontact::rheology as rh;
 
-use crate::arrays::mapped;
+use crate::arrays::{FROM_ZERO, mapped};
 use crate::errors::OrRaise;
+use crate::interrupt::free;
 use crate::recipe::Recipe;
 use crate::rheology::{Rheology, Series, series};
 
@@ -34,6 +35,18 @@ impl Tension {
 
     fn __getnewargs__(&self, py: Python<'_>) -> (Py<Rheology>,) {
         (self.0.clone_ref(py),)
+    }
+
+    fn __eq__(&self, py: Python<'_>, other: &Tension) -> PyResult<bool> {
+        self.0.bind(py).eq(&other.0)
+    }
+
+    fn __hash__(&self, py: Python<'_>) -> PyResult<isize> {
+        self.0.bind(py).hash()
+    }
+
+    fn __traverse__(&self, visit: pyo3::gc::PyVisit<'_>) -> crate::used::Traversed {
+        visit.call(&self.0)
     }
 }
 
@@ -75,7 +88,7 @@ makers! {Material, py:
 #[pymethods]
 impl Material {
     #[new]
-    #[pyo3(signature = (rheology, *, nu=None, bulk_modulus=None, bulk_ratio=None))]
+    #[pyo3(signature = (rheology, nu=None, *, bulk_modulus=None, bulk_ratio=None))]
     fn new(
         py: Python<'_>,
         rheology: Bound<'_, PyAny>,
@@ -122,13 +135,13 @@ impl Material {
     fn fitted(slf: Bound<'_, Self>, first: f64, last: f64, tolerance: f64) -> PyResult<Material> {
         let py = slf.py();
         let material = &slf.get().material;
-        let material = py.detach(|| material.fitted(first..=last, tolerance)).or_raise()?;
+        let material = free(py, || material.fitted(first..=last, tolerance)).or_raise()?;
         Ok(Material { material, recipe: Recipe::new(py, "fitted", (slf, first, last, tolerance))? })
     }
 
     /// C(t) [1/Pa] at times [s], 1/E* of an elastic body: a float, or an array of the shape of `t`.
     fn contact_compliance<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        mapped("t", t, |t| self.material.contact_compliance(t), || self.material.failure())
+        mapped("t", t, FROM_ZERO, |t| self.material.contact_compliance(t), || self.material.failure())
     }
 }
 

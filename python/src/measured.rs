@@ -1,7 +1,7 @@
 //! Measured creep, relaxation and dynamic moduli; temperature.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use pyo3::exceptions::{PyOSError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -11,11 +11,12 @@ use viscocontact::rheology::{self as rh, Experiment, Units};
 
 use crate::arrays::column;
 use crate::errors::{OrRaise, choice};
+use crate::grid::Count;
+use crate::interrupt::free;
 use crate::materials::Tension;
-use crate::recipe::{Recipe, Reduced};
+use crate::recipe::{Recipe, Value};
 use crate::rheology::Rheology;
 use crate::scene::unexpected;
-use crate::scratch::file_of;
 use crate::temperature::TimeTemperature;
 
 /// Temperatures that differ by less, relative, are the same.
@@ -55,8 +56,8 @@ impl Measurements {
     ) -> PyResult<Measurements> {
         let py = text.py();
         let (kind, of_file) = (choice("experiment", experiment, &EXPERIMENTS)?, of_units(units.as_ref())?);
-        let table = text_table(path, reading.as_ref())?;
-        let measurements = py.detach(|| rh::Measurements::from_table(kind, &table, of_file)).or_raise()?;
+        let table = text_table(&path, Some(text.as_bytes()), reading.as_ref())?;
+        let measurements = free(py, || rh::Measurements::from_table(kind, &table, of_file)).or_raise()?;
         let keywords = reading.map_or_else(|| Ok(PyDict::new(py)), |reading| reading.copy())?;
         keywords.set_item("units", units)?;
         let recipe = Recipe::new(py, "_of_bytes", (experiment, text))?.with_keywords(Some(&keywords))?;
@@ -80,19 +81,19 @@ fn together(names: [&str; 2], x: &Bound<'_, PyAny>, y: &Bound<'_, PyAny>) -> PyR
 
 makers! {Measurements, py:
     /// Creep: times ≥ 0 [s] and compliances [1/Pa], in any order.
-    creep(times: Bound<'_, PyAny>, compliances: Bound<'_, PyAny>) =
+    creep(times: Value<'_>, compliances: Value<'_>) =
         rh::Measurements::creep(&together(["times", "compliances"], &times, &compliances)?);
 
     /// Relaxation: times ≥ 0 [s] and moduli [Pa], in any order.
-    relaxation(times: Bound<'_, PyAny>, moduli: Bound<'_, PyAny>) =
+    relaxation(times: Value<'_>, moduli: Value<'_>) =
         rh::Measurements::relaxation(&together(["times", "moduli"], &times, &moduli)?);
 
     /// Storage moduli alone: angular frequencies [rad/s] and moduli [Pa], in any order.
-    storage(omega: Bound<'_, PyAny>, storage: Bound<'_, PyAny>) =
+    storage(omega: Value<'_>, storage: Value<'_>) =
         rh::Measurements::storage(&together(["omega", "storage"], &omega, &storage)?);
 
     /// Dynamic moduli: angular frequencies [rad/s], storage and loss moduli [Pa], in any order.
-    dynamic(omega: Bound<'_, PyAny>, storage: Bound<'_, PyAny>, loss: Bound<'_, PyAny>) = {
+    dynamic(omega: Value<'_>, storage: Value<'_>, loss: Value<'_>) = {
         let first = together(["omega", "storage"], &omega, &storage)?;
         let second = together(["omega", "loss"], &omega, &loss)?;
         let rows = first.into_iter().zip(second).map(|((x, storage), (_, loss))| (x, storage, loss));
@@ -136,8 +137,7 @@ impl Measurements {
         units: Option<Bound<'_, PyAny>>,
         reading: Option<Bound<'_, PyDict>>,
     ) -> PyResult<Measurements> {
-        let file = file_of(&text)?;
-        Measurements::read(experiment, (file.0.clone(), text), units, reading)
+        Measurements::read(experiment, (PathBuf::from("text of a pickle"), text), units, reading)
     }
 
     /// The same with the relative standard deviation of the values stated.
@@ -152,7 +152,7 @@ impl Measurements {
     #[pyo3(signature = (extrapolated=false))]
     fn fit(slf: Bound<'_, Self>, extrapolated: bool) -> PyResult<Rheology> {
         let (py, measurements) = (slf.py(), &slf.get().measurements);
-        let series = py.detach(|| measurements.fit()).or_raise()?;
+        let series = free(py, || measurements.fit()).or_raise()?;
         Ok(series_of(Recipe::of::<Measurements>(py, "fit", (slf.clone(), extrapolated))?, series, extrapolated))
     }
 
@@ -166,25 +166,19 @@ impl Measurements {
     /// The creep of the rod, for pickle.
     fn _rod(slf: Bound<'_, Self>, extrapolated: bool) -> PyResult<Rheology> {
         let (py, measurements) = (slf.py(), &slf.get().measurements);
-        let series = py.detach(|| measurements.fit_tension()).or_raise()?.0;
+        let series = free(py, || measurements.fit_tension()).or_raise()?.0;
         Ok(series_of(Recipe::of::<Measurements>(py, "_rod", (slf.clone(), extrapolated))?, series, extrapolated))
     }
-
-    fn __repr__(&self) -> String {
-        format!("{:?}", self.measurements)
-    }
-
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        slf.get().recipe.reduce(slf.get_type())
-    }
 }
+
+made_by_calls!(Measurements);
 
 fn series_of(recipe: Recipe, series: rh::CreepSeries, extrapolated: bool) -> Rheology {
     Rheology::by(recipe, if extrapolated { series.extrapolated() } else { series })
 }
 
 /// A text file, read as keywords say: `decimal_comma`, `delimiter`, `skipped_lines`, `headings` by column, and `only` some of them.
-pub fn text_table(path: PathBuf, reading: Option<&Bound<'_, PyDict>>) -> PyResult<TextTable> {
+pub fn text_table(path: &Path, text: Option<&[u8]>, reading: Option<&Bound<'_, PyDict>>) -> PyResult<TextTable> {
     use Delimiter::{Blanks, Comma, Semicolon, Tab};
     let delimiters = [("comma", Comma), ("semicolon", Semicolon), ("tab", Tab), ("blanks", Blanks)];
     let (mut format, mut headings, mut only) = (TextFormat::default(), BTreeMap::<usize, String>::new(), None);
@@ -193,13 +187,20 @@ pub fn text_table(path: PathBuf, reading: Option<&Bound<'_, PyDict>>) -> PyResul
             _ if value.is_none() => {}
             "decimal_comma" => format = format.with_decimal_comma(value.extract()?),
             "delimiter" => format = format.with_delimiter(choice("delimiter", value.extract()?, &delimiters)?),
-            "skipped_lines" => format = format.with_skipped_lines(value.extract()?),
+            "skipped_lines" => format = format.with_skipped_lines(value.extract::<Count>()?.0 as u64),
             "headings" => headings = value.extract()?,
             "only" => only = Some(value.extract::<Vec<String>>()?),
-            name => return Err(unexpected(name)),
+            name => {
+                let known = ["decimal_comma", "delimiter", "skipped_lines", "headings", "only"];
+                return Err(unexpected("from_csv", name, &known));
+            }
         }
     }
-    let mut table = TextTable::open(path, format).or_raise()?;
+    let mut table = match text {
+        Some(text) => TextTable::read(text, format),
+        None => TextTable::open(path, format),
+    }
+    .or_raise()?;
     for (column, heading) in headings {
         table = table.with_heading(column + 1, &heading).or_raise()?;
     }
@@ -232,6 +233,13 @@ fn of_units(units: Option<&Bound<'_, PyAny>>) -> PyResult<Units> {
 ///     A known law of the same reference, without `vertical_shifts`; else the shifts are found from the data.
 /// vertical_shifts : bool
 ///     Whether the values may be shifted too.
+///
+/// >>> import numpy as np
+/// >>> t = np.geomspace(1e-1, 1e1, 9)
+/// >>> creep = lambda shift: Measurements.creep(t, 1e-6 * (1 + (t / shift) ** 0.3))
+/// >>> curve = MasterCurve(300.0, [(300.0, creep(1.0)), (310.0, creep(0.1))])
+/// >>> [round(shift, 2) for temperature, shift, error in curve.shift_factors]
+/// [1.0, 0.1]
 #[pyclass(frozen, module = "viscocontact")]
 pub struct MasterCurve(rh::MasterCurve);
 
@@ -263,7 +271,7 @@ impl MasterCurve {
                 ));
             }
         }
-        let curve = py.detach(|| match law {
+        let curve = free(py, || match law {
             Some(law) => rh::MasterCurve::with_law(&law.law, isotherms),
             None if vertical_shifts => rh::MasterCurve::with_vertical_shifts(reference, isotherms),
             None => rh::MasterCurve::new(reference, isotherms),
@@ -287,8 +295,8 @@ impl MasterCurve {
         reading: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<MasterCurve> {
         let (experiment, units) = (choice("experiment", experiment, &EXPERIMENTS)?, of_units(units)?);
-        let table = text_table(path, reading)?;
-        let curve = py.detach(|| {
+        let table = text_table(&path, None, reading)?;
+        let curve = free(py, || {
             let isotherms = rh::Isotherm::from_table(experiment, &table, units)?;
             if vertical_shifts {
                 rh::MasterCurve::with_vertical_shifts(reference, isotherms)
@@ -329,14 +337,14 @@ impl MasterCurve {
     fn shift_table(&self, py: Python<'_>) -> PyResult<TimeTemperature> {
         let law = self.0.shift_table().or_raise()?;
         let table = self.0.shift_factors().into_pyobject(py)?;
-        self.with_vertical(py, &law, TimeTemperature::table(py, table, law.reference())?)
+        self.with_vertical(py, &law, TimeTemperature::table(py, Value(table.into_any()), law.reference())?)
     }
 
     /// The body at the reference temperature.
     #[pyo3(signature = (extrapolated=false))]
     fn fit(slf: Bound<'_, Self>, extrapolated: bool) -> PyResult<Rheology> {
         let (py, curve) = (slf.py(), &slf.get().0);
-        let series = py.detach(|| curve.fit()).or_raise()?;
+        let series = free(py, || curve.fit()).or_raise()?;
         Ok(series_of(Recipe::of::<MasterCurve>(py, "fit", (slf.clone(), extrapolated))?, series, extrapolated))
     }
 
@@ -372,7 +380,7 @@ impl MasterCurve {
         }
         let row = |(temperature, _)| Ok((temperature, law.vertical_factor(temperature)?));
         let rows = self.0.shift_factors().into_iter().map(row).collect::<viscocontact::Result<Vec<_>>>().or_raise()?;
-        TimeTemperature::with_vertical_factors(Bound::new(py, made)?, rows.into_pyobject(py)?)
+        TimeTemperature::with_vertical_factors(Bound::new(py, made)?, Value(rows.into_pyobject(py)?))
     }
 }
 
@@ -385,5 +393,7 @@ getters! {MasterCurve, of:
 
 /// The OSError of a file, of the kind that its number has, with its name.
 fn unreadable(path: &std::path::Path, error: &std::io::Error) -> PyErr {
-    PyOSError::new_err((error.raw_os_error(), error.to_string(), path.to_path_buf()))
+    let text = error.to_string();
+    let reason = text.split(" (os error").next().unwrap_or_default().to_owned();
+    PyOSError::new_err((error.raw_os_error(), reason, path.display().to_string()))
 }

@@ -10,10 +10,12 @@ use crate::contact::ViscoelasticContact;
 use crate::elastic::ElasticContact;
 use crate::errors::OrRaise;
 use crate::fields::{Fields, Shown};
-use crate::grid::Grid;
+use crate::grid::{Count, Grid};
+use crate::interrupt::free;
 use crate::kernels::axis;
 use crate::shapes::Shape;
 use crate::stress::SubsurfaceStress;
+use crate::used::Shared;
 
 /// What a class that has fields shows.
 macro_rules! observed {
@@ -21,22 +23,22 @@ macro_rules! observed {
         #[pymethods]
         impl $class {
             /// The force that moves `shape` along the surface without friction, along x1 and x2 [N].
-            fn lateral_force(&self, py: Python<'_>, shape: &Shape) -> PyResult<(f64, f64)> {
-                let contact = self.shown()?;
-                Ok(py.detach(|| contact.lateral_force(&*shape.geometry)).into())
+            fn lateral_force(slf: Shared<'_, Self>, py: Python<'_>, shape: &Shape) -> PyResult<(f64, f64)> {
+                let contact = slf.shown()?;
+                Ok(free(py, || contact.lateral_force(&*shape.geometry)).into())
             }
 
             /// Normal stiffness over the contact modulus [m].
-            fn stiffness_over_modulus(&self, py: Python<'_>) -> PyResult<f64> {
-                let contact = self.shown()?;
-                py.detach(|| contact.stiffness_over_modulus()).or_raise()
+            fn stiffness_over_modulus(slf: Shared<'_, Self>, py: Python<'_>) -> PyResult<f64> {
+                let contact = slf.shown()?;
+                free(py, || contact.stiffness_over_modulus()).or_raise()
             }
 
             /// Relative errors due to the mesh, measured by elastic contacts on half and a quarter of the cells along each side: "approach", "max_pressure" (None where it does not converge), "pressure_field" (Σ |δp| over
             /// Σ p), "area"; None where they are too few.
-            fn mesh_error<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
-                let contact = self.shown()?;
-                let Some(error) = py.detach(|| contact.mesh_error()).or_raise()? else { return Ok(None) };
+            fn mesh_error<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
+                let contact = slf.shown()?;
+                let Some(error) = free(py, || contact.mesh_error()).or_raise()? else { return Ok(None) };
                 Ok(Some(dict! { py;
                     "approach": error.approach,
                     "max_pressure": error.max_pressure,
@@ -47,23 +49,32 @@ macro_rules! observed {
 
             /// The distribution of the pressure over the grid: the share at zero, the centres of the bins [Pa], and the density [1/Pa].
             fn pressure_distribution<'py>(
-                &self,
+                slf: Shared<'_, Self>,
                 py: Python<'py>,
-                bins: usize,
+                bins: Count,
             ) -> PyResult<(f64, Array<'py>, Array<'py>)> {
-                distribution(py, &self.shown()?.pressure_distribution(bins).or_raise()?)
+                distribution(py, &slf.shown()?.pressure_distribution(bins.0).or_raise()?)
             }
 
             /// The distribution of the gap where it is finite: the share at zero, the centres of the bins [m], and the density [1/m].
-            fn gap_distribution<'py>(&self, py: Python<'py>, bins: usize) -> PyResult<(f64, Array<'py>, Array<'py>)> {
-                distribution(py, &self.shown()?.gap_distribution(bins).or_raise()?)
+            fn gap_distribution<'py>(
+                slf: Shared<'_, Self>,
+                py: Python<'py>,
+                bins: Count,
+            ) -> PyResult<(f64, Array<'py>, Array<'py>)> {
+                distribution(py, &slf.shown()?.gap_distribution(bins.0).or_raise()?)
             }
 
             /// Arrays "position" [m], "pressure", "displacement", "gap" and "traction" along the line of cells in the direction of the axis `along`
             /// (0 or 1) that contains the other coordinate `at` [m].
             #[pyo3(signature = (along=0, at=0.0))]
-            fn profile<'py>(&self, py: Python<'py>, along: usize, at: f64) -> PyResult<Bound<'py, PyDict>> {
-                let line = self.shown()?.profile(axis(along)?, at).or_raise()?;
+            fn profile<'py>(
+                slf: Shared<'_, Self>,
+                py: Python<'py>,
+                along: usize,
+                at: f64,
+            ) -> PyResult<Bound<'py, PyDict>> {
+                let line = slf.shown()?.profile(axis(along)?, at).or_raise()?;
                 let named = [
                     ("position", line.positions),
                     ("pressure", line.pressure),
@@ -76,15 +87,19 @@ macro_rules! observed {
 
             /// The connected patches of the contact: an array of labels (0 out of contact, k + 1 in patch k), and for each patch a dict of
             /// "cells", "area" [m²], "force" [N], "centroid" [m], "max_pressure" [Pa] and "winds" (around periodic axes).
-            fn patches<'py>(&self, py: Python<'py>) -> PyResult<Labelled<'py>> {
-                let contact = self.shown()?;
-                labelled(py, contact.grid(), py.detach(|| contact.patches()).or_raise()?)
+            fn patches<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Labelled<'py>> {
+                let contact = slf.shown()?;
+                labelled(py, contact.grid(), free(py, || contact.patches()).or_raise()?)
             }
 
             /// About a point [m] along x1 and x2: the "center_of_pressure" [m], the "reach" to the ends of the contact, back and ahead along each
             /// axis [m], and its "skewness", (ahead − back)/(ahead + back); None without contact.
-            fn asymmetry<'py>(&self, py: Python<'py>, about: [f64; 2]) -> PyResult<Option<Bound<'py, PyDict>>> {
-                let Some(of) = self.shown()?.asymmetry(about).or_raise()? else { return Ok(None) };
+            fn asymmetry<'py>(
+                slf: Shared<'_, Self>,
+                py: Python<'py>,
+                about: [f64; 2],
+            ) -> PyResult<Option<Bound<'py, PyDict>>> {
+                let Some(of) = slf.shown()?.asymmetry(about).or_raise()? else { return Ok(None) };
                 Ok(Some(dict! { py;
                     "center_of_pressure": of.center_of_pressure,
                     "reach": of.reach,
@@ -96,11 +111,11 @@ macro_rules! observed {
             ///
             /// Raises NotImplementedError where it is not known: in layers, or with an elastic bulk.
             #[pyo3(signature = (*, in_counter_body=false))]
-            fn stress(&self, py: Python<'_>, in_counter_body: bool) -> PyResult<SubsurfaceStress> {
-                let contact = self.shown()?;
-                let stress = py
-                    .detach(|| if in_counter_body { contact.stress_in_counter_body() } else { contact.stress() })
-                    .or_raise()?;
+            fn stress(slf: Shared<'_, Self>, py: Python<'_>, in_counter_body: bool) -> PyResult<SubsurfaceStress> {
+                let contact = slf.shown()?;
+                let stress =
+                    free(py, || if in_counter_body { contact.stress_in_counter_body() } else { contact.stress() })
+                        .or_raise()?;
                 Ok(SubsurfaceStress(stress))
             }
         }
@@ -143,7 +158,7 @@ pub fn patches<'py>(
     periodic: [bool; 2],
 ) -> PyResult<Labelled<'py>> {
     let pressure = field("pressure", pressure, grid.0.cells())?;
-    labelled(py, &grid.0, py.detach(|| ob::Patches::new(&grid.0, &pressure, periodic)).or_raise()?)
+    labelled(py, &grid.0, free(py, || ob::Patches::new(&grid.0, &pressure, periodic)).or_raise()?)
 }
 
 fn distribution<'py>(py: Python<'py>, of: &ob::Distribution) -> PyResult<(f64, Array<'py>, Array<'py>)> {

@@ -14,9 +14,10 @@ use crate::elastic::ElasticContact;
 use crate::errors::{OrRaise, choice};
 use crate::fields::{Fields, Showing, Shown};
 use crate::grid::Grid;
+use crate::interrupt::free;
 use crate::kernels::axis;
-use crate::scratch::bytes_of;
 use crate::stress::QUANTITIES;
+use crate::used::{Shared, Taken};
 use crate::writers::FIELDS;
 
 /// The quantity of an axis; the empty unit is that of a number.
@@ -95,7 +96,7 @@ impl Picture {
 
     /// Writes the picture by the ending of the path, `.png` or `.svg`. An existing file is replaced.
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        py.detach(|| self.0.save(path)).or_raise()
+        free(py, || self.0.save(path)).or_raise()
     }
 
     /// Red, green and blue of each pixel, of shape (height, width, 3) and type uint8.
@@ -105,8 +106,8 @@ impl Picture {
         Ok(self.0.rgb().to_vec().into_pyarray(py).reshape([height, width, 3])?.into_any())
     }
 
-    fn _repr_png_<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        bytes_of(py, "png", |file| self.0.save(file))
+    fn _repr_png_<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
+        PyBytes::new(py, &free(py, || self.0.to_png()))
     }
 
     fn __repr__(&self) -> String {
@@ -125,15 +126,20 @@ macro_rules! drawn {
         impl $class {
             /// A map of "pressure", "gap", "displacement" or "traction" with the contact outlined; `range` are the ends of the colours.
             #[pyo3(signature = (field="pressure", *, range=None))]
-            fn picture(&self, py: Python<'_>, field: &str, range: Option<[f64; 2]>) -> PyResult<Picture> {
+            fn picture(
+                slf: Shared<'_, Self>,
+                py: Python<'_>,
+                field: &str,
+                range: Option<[f64; 2]>,
+            ) -> PyResult<Picture> {
                 let fields: [(&str, Draw); 4] = [
                     ("pressure", |of| Map::pressure(of)),
                     ("gap", |of| Map::gap(of)),
                     ("displacement", |of| Map::displacement(of)),
                     ("traction", |of| Map::traction(of)),
                 ];
-                let (draw, contact) = (choice("field", field, &fields)?, self.shown()?);
-                let picture = py.detach(|| {
+                let (draw, contact) = (choice("field", field, &fields)?, slf.shown()?);
+                let picture = free(py, || {
                     let mut map = draw(contact)?;
                     map.range = range.unwrap_or(map.range);
                     map.draw()
@@ -143,24 +149,24 @@ macro_rules! drawn {
 
             /// The pressure along a line of cells, as of `profile`.
             #[pyo3(signature = (along=0, at=0.0))]
-            fn profile_picture(&self, along: usize, at: f64) -> PyResult<Picture> {
-                Chart::profile(self.shown()?, axis(along)?, at).and_then(|chart| chart.draw()).or_raise().map(Picture)
+            fn profile_picture(slf: Shared<'_, Self>, along: usize, at: f64) -> PyResult<Picture> {
+                Chart::profile(slf.shown()?, axis(along)?, at).and_then(|chart| chart.draw()).or_raise().map(Picture)
             }
 
             /// A map of the stress below a line of cells, at `depths` [m] in equal steps: "von_mises", "tresca", "mean", "principal_1" or
             /// "principal_3".
             #[pyo3(signature = (depths, quantity="von_mises", *, along=0, at=0.0))]
             fn stress_picture(
-                &self,
+                slf: Shared<'_, Self>,
                 py: Python<'_>,
                 depths: Vec<f64>,
                 quantity: &str,
                 along: usize,
                 at: f64,
             ) -> PyResult<Picture> {
-                let (contact, along, of) = (self.shown()?, axis(along)?, choice("quantity", quantity, &QUANTITIES)?);
+                let (contact, along, of) = (slf.shown()?, axis(along)?, choice("quantity", quantity, &QUANTITIES)?);
                 let name = Quantity::new(quantity.replace('_', " "), "Pa");
-                let picture = py.detach(|| {
+                let picture = free(py, || {
                     let section = contact.stress()?.on_section(along, at, &depths)?;
                     Map::section(contact, &section, of, name)?.draw()
                 });
@@ -198,21 +204,21 @@ impl Animation {
     }
 
     /// Appends the state of a contact.
-    fn record(&mut self, py: Python<'_>, contact: Showing<'_>) -> PyResult<()> {
-        let (animation, contact) = (self.open()?, contact.shown()?);
-        py.detach(|| animation.record(contact)).or_raise()
+    fn record(mut slf: Taken<'_, Self>, py: Python<'_>, contact: Showing<'_>) -> PyResult<()> {
+        let (animation, contact) = (slf.open()?, contact.shown()?);
+        free(py, || animation.record(contact)).or_raise()
     }
 
     /// Appends a picture; all have the same size.
-    fn record_picture(&mut self, py: Python<'_>, picture: &Picture) -> PyResult<()> {
-        let animation = self.open()?;
-        py.detach(|| animation.record_picture(&picture.0)).or_raise()
+    fn record_picture(mut slf: Taken<'_, Self>, py: Python<'_>, picture: &Picture) -> PyResult<()> {
+        let animation = slf.open()?;
+        free(py, || animation.record_picture(&picture.0)).or_raise()
     }
 
     /// Writes the end of the file, and gives it its name.
-    fn finish(&mut self, py: Python<'_>) -> PyResult<()> {
-        let animation = self.0.take();
-        py.detach(|| animation.map_or(Ok(()), vp::Animation::finish)).or_raise()
+    fn finish(mut slf: Taken<'_, Self>, py: Python<'_>) -> PyResult<()> {
+        let animation = slf.0.take();
+        free(py, || animation.map_or(Ok(()), vp::Animation::finish)).or_raise()
     }
 
     fn __enter__(slf: Bound<'_, Self>) -> Bound<'_, Self> {
@@ -220,8 +226,8 @@ impl Animation {
     }
 
     #[pyo3(signature = (*_raised))]
-    fn __exit__(&mut self, py: Python<'_>, _raised: &Bound<'_, pyo3::types::PyTuple>) -> PyResult<()> {
-        self.finish(py)
+    fn __exit__(slf: Taken<'_, Self>, py: Python<'_>, _raised: &Bound<'_, pyo3::types::PyTuple>) -> PyResult<()> {
+        Self::finish(slf, py)
     }
 }
 

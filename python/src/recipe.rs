@@ -1,8 +1,11 @@
-//! How an object was made: its repr, its pickle and its copies are the call that made it.
+//! How an object was made: its repr, its pickle, its copies and what it equals are the call that made it.
 
-use pyo3::PyTypeInfo;
+use pyo3::gc::PyVisit;
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict, PyList, PyString, PyTuple, PyType};
+use pyo3::types::{PyDict, PyFloat, PyInt, PyTuple, PyType};
+use pyo3::{Borrowed, PyTypeInfo};
+
+use crate::used::{Function, Traversed};
 
 /// A call of a class, or of one of its static methods.
 pub struct Recipe {
@@ -11,6 +14,7 @@ pub struct Recipe {
     maker: &'static str,
     arguments: Py<PyTuple>,
     keywords: Option<Py<PyDict>>,
+    functions: Vec<Function>,
 }
 
 /// What `__reduce__` returns: the function that makes the object again, and its arguments.
@@ -24,7 +28,7 @@ impl Recipe {
         arguments: impl IntoPyObject<'py, Target = PyTuple, Output = Bound<'py, PyTuple>, Error = PyErr>,
     ) -> PyResult<Recipe> {
         let arguments = own(arguments.into_pyobject(py)?.as_any())?.cast_into::<PyTuple>()?.unbind();
-        Ok(Recipe { class: None, maker, arguments, keywords: None })
+        Ok(Recipe { class: None, maker, arguments, keywords: None, functions: Vec::new() })
     }
 
     /// A call of a method of another class than the object's.
@@ -46,13 +50,27 @@ impl Recipe {
         Ok(Recipe { keywords: keywords.map(own).transpose()?, ..self })
     }
 
+    /// The recipe of the object that shows to the garbage collector the functions that its part of the crate calls.
+    pub fn calling(self, functions: impl Into<Vec<Function>>) -> Recipe {
+        Recipe { functions: functions.into(), ..self }
+    }
+
+    /// Without the functions, which another object shows.
     pub fn again(&self, py: Python<'_>) -> Recipe {
         Recipe {
             class: self.class.as_ref().map(|class| class.clone_ref(py)),
             maker: self.maker,
             arguments: self.arguments.clone_ref(py),
             keywords: self.keywords.as_ref().map(|keywords| keywords.clone_ref(py)),
+            functions: Vec::new(),
         }
+    }
+
+    pub fn traverse(&self, visit: &PyVisit<'_>) -> Traversed {
+        visit.call(&self.class)?;
+        visit.call(&self.arguments)?;
+        visit.call(&self.keywords)?;
+        self.functions.iter().try_for_each(|function| visit.call(&*function.0))
     }
 
     pub fn reduce<'py>(&self, class: Bound<'py, PyType>) -> PyResult<Reduced<'py>> {
@@ -63,59 +81,54 @@ impl Recipe {
         Ok((again, (class, self.maker, self.arguments.clone_ref(py), keywords)))
     }
 
+    /// What equal objects have equal, and can be hashed.
+    pub fn key<'py>(&self, class: Bound<'py, PyType>) -> PyResult<Bound<'py, PyAny>> {
+        let py = class.py();
+        py.import("viscocontact._values")?.call_method1("key", (class, self.maker, &self.arguments, &self.keywords))
+    }
+
     /// The call in one line; of arrays their shape alone.
     pub fn repr(&self, class: &Bound<'_, PyType>) -> PyResult<String> {
         let (py, class) = (class.py(), self.class(class.clone()));
-        let mut shown: Vec<String> =
-            self.arguments.bind(py).iter().map(|value| shown(&value)).collect::<PyResult<_>>()?;
-        if let Some(keywords) = &self.keywords {
-            for (name, value) in keywords.bind(py) {
-                shown.push(format!("{name}={}", self::shown(&value)?));
-            }
-        }
-        if self.maker == "__add__" {
-            return Ok(shown.join(" + "));
-        }
-        let dot = if self.maker.is_empty() { "" } else { "." };
-        Ok(format!("{}{dot}{}({})", class.name()?, self.maker, shown.join(", ")))
+        let arguments = (class, self.maker, &self.arguments, &self.keywords);
+        py.import("viscocontact._values")?.call_method1("shown", arguments)?.extract()
+    }
+}
+
+/// An argument that a recipe keeps as it was: of an iterator its values, of an array a copy.
+#[derive(IntoPyObject)]
+#[pyo3(transparent)]
+pub struct Value<'py>(pub Bound<'py, PyAny>);
+
+impl<'py> FromPyObject<'_, 'py> for Value<'py> {
+    type Error = PyErr;
+
+    fn extract(given: Borrowed<'_, 'py, PyAny>) -> PyResult<Value<'py>> {
+        own(&given).map(Value)
+    }
+}
+
+impl<'py> std::ops::Deref for Value<'py> {
+    type Target = Bound<'py, PyAny>;
+
+    fn deref(&self) -> &Bound<'py, PyAny> {
+        &self.0
     }
 }
 
 /// A value of a call as it is now: what the caller may change later is copied, down to the entries of sequences.
 fn own<'py>(value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-    let py = value.py();
-    if let Ok(tuple) = value.cast_exact::<PyTuple>() {
-        let entries: Vec<_> = tuple.iter().map(|entry| own(&entry)).collect::<PyResult<_>>()?;
-        return Ok(PyTuple::new(py, entries)?.into_any());
-    }
-    if let Ok(list) = value.cast_exact::<PyList>() {
-        let entries: Vec<_> = list.iter().map(|entry| own(&entry)).collect::<PyResult<_>>()?;
-        return Ok(PyList::new(py, entries)?.into_any());
-    }
-    if let Ok(dict) = value.cast_exact::<PyDict>() {
-        let copy = PyDict::new(py);
-        dict.iter().try_for_each(|(key, entry)| copy.set_item(key, own(&entry)?))?;
-        return Ok(copy.into_any());
-    }
-    // arrays, and other sequences; objects of this package do not change
-    let is_fixed = value.is_instance_of::<PyString>() || value.is_instance_of::<PyBytes>() || value.is_callable();
-    let is_own = || value.get_type().module().is_ok_and(|module| module.to_string().starts_with("viscocontact"));
-    if is_fixed || !value.hasattr("__len__")? || is_own() {
+    // most are numbers, and objects that do not change
+    if value.is_exact_instance_of::<PyFloat>() || value.is_exact_instance_of::<PyInt>() {
         return Ok(value.clone());
     }
-    // what is read from elsewhere, as by h5py, cannot be copied, but its numbers can
-    let copied = py.import("copy")?.call_method1("copy", (value,));
-    copied.or_else(|_| py.import("numpy")?.call_method1("array", (value,)))
+    value.py().import("viscocontact._values")?.call_method1("own", (value,))
 }
 
-fn shown(value: &Bound<'_, PyAny>) -> PyResult<String> {
-    if value.hasattr("dtype")?
-        && let Ok(shape) = value.getattr("shape")?.extract::<Vec<usize>>()
-    {
-        return Ok(format!("<array {shape:?}>"));
-    }
-    let text = value.repr()?.to_string();
-    Ok(if text.chars().count() > 60 { format!("{}…", text.chars().take(59).collect::<String>()) } else { text })
+/// A number as Python writes it, to six digits.
+pub fn digits(value: f64) -> String {
+    Python::attach(|py| value.into_pyobject(py)?.call_method1("__format__", (".6g",))?.extract())
+        .unwrap_or_else(|_: PyErr| value.to_string())
 }
 
 /// Makes an object again: for pickle.

@@ -5,14 +5,20 @@ use pyo3::types::PyDict;
 use viscocontact::contact as ct;
 
 use crate::errors::in_python;
+use crate::recipe::digits;
 
 /// The outcome and the cost of one step.
+///
+/// >>> contact = ViscoelasticContact(Grid(32, 4e-3), Shape.sphere(10e-3), Material(Rheology.maxwell(1e6, 1.0)))
+/// >>> report = contact.step(0.5, Load.force(0.5))
+/// >>> report.time, report.as_dict()["force"], report.warnings
+/// (0.5, 0.5, [])
 #[pyclass(frozen, module = "viscocontact")]
 pub struct StepReport(pub ct::StepReport);
 
 #[pymethods]
 impl StepReport {
-    /// The numbers by name: a row of a `pandas.DataFrame`.
+    /// The numbers by name: a row of a `pandas.DataFrame`. Areas are those of the contact: `Run.table` has them.
     fn as_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let of = &self.0;
         Ok(dict! { py;
@@ -60,6 +66,8 @@ pub fn figures<'py>(py: Python<'py>, of: &ct::Figures) -> PyResult<Bound<'py, Py
     })
 }
 
+numbers!(StepReport);
+
 getters! {StepReport, of:
     /// Time at the end of the step [s].
     time: f64 = of.time;
@@ -94,6 +102,11 @@ getters! {StepReport, of:
 }
 
 /// The state of one rigid body.
+///
+/// >>> contact = ElasticContact(Grid(32, 4e-3), Shape.sphere(10e-3), 4e6)
+/// >>> _ = contact.solve(Load.force(0.5))
+/// >>> contact.bodies[0].force
+/// 0.5
 #[pyclass(frozen, module = "viscocontact")]
 pub struct BodyState(pub ct::BodyState);
 
@@ -102,11 +115,15 @@ impl BodyState {
     fn __repr__(&self) -> String {
         let of = &self.0;
         format!(
-            "BodyState(force={:e}, approach={:e}, tilt={:?}, contact_cells={})",
-            of.force, of.approach, of.tilt, of.contact_cells
+            "BodyState(force={} N, approach={} m, contact_cells={})",
+            digits(of.force),
+            digits(of.approach),
+            of.contact_cells
         )
     }
 }
+
+numbers!(BodyState);
 
 getters! {BodyState, of:
     /// Approach at the origin of the grid [m].

@@ -7,9 +7,11 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use viscocontact::rheology::{self as rh, CreepSpectrum, Rheology as Body};
 
-use crate::arrays::{column, mapped, never, pairs, values};
+use crate::arrays::{FROM_ZERO, column, mapped, never, pairs, values};
 use crate::errors::{OrRaise, no_violation};
-use crate::recipe::Recipe;
+use crate::interrupt::free;
+use crate::recipe::{Recipe, Value};
+use crate::used::Function;
 
 /// The shear creep of a linear viscoelastic body: J(t), the strain after a unit shear stress [1/Pa].
 ///
@@ -20,7 +22,7 @@ use crate::recipe::Recipe;
 /// 1.0
 /// >>> rubber
 /// Rheology.prony(1000000.0, [(5000000.0, 0.001), (2000000.0, 0.1)])
-#[pyclass(frozen, module = "viscocontact")]
+#[pyclass(frozen, weakref, module = "viscocontact")]
 pub struct Rheology {
     pub body: Arc<dyn Body>,
     recipe: Recipe,
@@ -68,12 +70,12 @@ makers! {Rheology, py:
 
     /// A Prony series G(t) = G∞ + Σ G_k exp(−t/τ_k): the `equilibrium` modulus [Pa] (0 for a fluid) and rows (modulus [Pa], relaxation
     /// time [s]).
-    prony(equilibrium: f64, terms: Bound<'_, PyAny>) =
+    prony(equilibrium: f64, terms: Value<'_>) =
         rh::GeneralizedMaxwell::new(equilibrium, &pairs("terms", &terms)?);
 
     /// A creep series J(t) = J_g + φ t + Σ J_k (1 − exp(−t/λ_k)): `glassy` compliance [1/Pa], `fluidity` [1/(Pa·s)], rows (compliance
     /// [1/Pa], retardation time [s]).
-    generalized_kelvin(glassy: f64, fluidity: f64, terms: Bound<'_, PyAny>) =
+    generalized_kelvin(glassy: f64, fluidity: f64, terms: Value<'_>) =
         rh::GeneralizedKelvin::new(glassy, fluidity, &pairs("terms", &terms)?);
 
     /// A springpot J(t) = J₁ (t/t₁)^α: `compliance` J₁ [1/Pa] at `time` t₁ [s], `exponent` α.
@@ -104,12 +106,15 @@ makers! {Rheology, py:
         rh::SlowCreep::new(glassy, strength, time, exponent);
 
     /// A Prony series as finite-element programs write it: the `glassy` modulus [Pa] and rows (share g_k, relaxation time [s]).
-    prony_of_glassy(glassy: f64, terms: Bound<'_, PyAny>) = rh::GeneralizedMaxwell::prony(glassy, &shares(&terms)?);
+    prony_of_glassy(glassy: f64, terms: Value<'_>) = rh::GeneralizedMaxwell::prony(glassy, &shares(&terms)?);
 
     /// A Prony series relative to the `rubbery` modulus [Pa]: rows (share g_k, relaxation time [s]).
-    prony_of_rubbery(rubbery: f64, terms: Bound<'_, PyAny>) =
+    prony_of_rubbery(rubbery: f64, terms: Value<'_>) =
         rh::GeneralizedMaxwell::prony_long_term(rubbery, &shares(&terms)?);
+}
 
+#[pymethods]
+impl Rheology {
     /// Your own shear creep compliance: a function of the time t ≥ 0 [s] that returns J [1/Pa], never decreasing.
     ///
     /// An exception of the function comes out of the call that needed the compliance.
@@ -117,20 +122,18 @@ makers! {Rheology, py:
     /// >>> own = Rheology.function(lambda t: 1e-6 * (1 + t**0.3))
     /// >>> own.creep_compliance(1.0)
     /// 2e-06
-    function(creep_compliance: Py<PyAny>) = {
-        let function = creep_compliance.clone_ref(py);
-        let call = move |t: f64| Python::attach(|py| function.call1(py, (t,))?.extract::<f64>(py));
-        Ok::<_, viscocontact::Error>(rh::FnRheology::fallible(call))
-    };
-}
+    #[staticmethod]
+    fn function(py: Python<'_>, creep_compliance: Function) -> PyResult<Rheology> {
+        let function = creep_compliance.clone();
+        let made = rh::FnRheology::fallible(move |t: f64| function.call::<f64>((t,)));
+        Ok(Rheology::by(Recipe::new(py, "function", (creep_compliance.clone(),))?.calling([creep_compliance]), made))
+    }
 
-#[pymethods]
-impl Rheology {
     /// This body fitted by an exponential series over the times from `first` to `last` [s] within a relative error.
     #[pyo3(signature = (first, last, tolerance=1e-4))]
     fn fitted(slf: Bound<'_, Self>, first: f64, last: f64, tolerance: f64) -> PyResult<Rheology> {
         let (py, body) = (slf.py(), Arc::clone(&slf.get().body));
-        let series = py.detach(|| body.series(first..=last, tolerance)).or_raise()?;
+        let series = free(py, || body.series(first..=last, tolerance)).or_raise()?;
         Ok(Rheology::by(Recipe::new(py, "fitted", (slf, first, last, tolerance))?, series))
     }
 
@@ -142,28 +145,32 @@ impl Rheology {
     /// ValueError: ...
     fn check(&self, py: Python<'_>, times: &Bound<'_, PyAny>) -> PyResult<()> {
         let times = column("times", times)?;
-        let verdict = py.detach(|| rh::laws::all(&*self.body, &times));
+        let verdict = free(py, || rh::laws::all(&*self.body, &times));
         no_violation(self.body.failure(), verdict)
     }
 
     /// J(t) [1/Pa] at times [s]: a float, or an array of the shape of `t`.
     fn creep_compliance<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        mapped("t", t, |t| self.body.creep_compliance(t), || self.body.failure())
+        mapped("t", t, FROM_ZERO, |t| self.body.creep_compliance(t), || self.body.failure())
     }
 
     /// G(t) [Pa] at times [s], without an immediate dashpot. Raises ValueError without an exponential series (`fitted`).
     fn relaxation_modulus<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let spectrum = self.spectrum()?.relaxation();
-        mapped("t", t, |t| spectrum.modulus(t), never)
+        mapped("t", t, FROM_ZERO, |t| spectrum.modulus(t), never)
     }
 
-    /// G*(ω) = G′ + i G″ [Pa] at angular frequencies [rad/s], an array of complex numbers. Raises ValueError without an exponential
-    /// series (`fitted`).
+    /// G*(ω) = G′ + i G″ [Pa] at angular frequencies [rad/s]: a complex number, or an array of the shape of `omega`. G*(−ω) is the complex
+    /// conjugate of G*(ω). Raises ValueError without an exponential series (`fitted`).
     fn complex_modulus<'py>(&self, py: Python<'py>, omega: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let spectrum = self.spectrum()?;
+        let nan = Complex64::new(f64::NAN, f64::NAN);
+        let modulus = |omega: f64| if omega.is_nan() { nan } else { spectrum.complex_modulus(omega) };
         let (values, shape) = values("omega", omega)?;
-        let moduli: Vec<Complex64> = values.into_iter().map(|omega| spectrum.complex_modulus(omega)).collect();
-        Ok(moduli.into_pyarray(py).reshape(shape)?.into_any())
+        let moduli: Vec<Complex64> = values.into_iter().map(modulus).collect();
+        let moduli = moduli.into_pyarray(py).reshape(&shape[..])?.into_any();
+        // of a number, a number
+        if shape.is_empty() { moduli.get_item(()) } else { Ok(moduli) }
     }
 }
 

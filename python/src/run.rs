@@ -1,8 +1,11 @@
 //! Runs along a load history.
 
 use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use pyo3::exceptions::PyTypeError;
+use pyo3::gc::PyVisit;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use viscocontact as vc;
@@ -14,10 +17,12 @@ use crate::arrays;
 use crate::contact::ViscoelasticContact;
 use crate::errors::{Cancelled, OrRaise, choice, raised_number};
 use crate::fields::Fields;
-use crate::held::{Led, Options};
-use crate::recipe::Recipe;
+use crate::held::Led;
+use crate::interrupt::free;
+use crate::recipe::{Recipe, digits};
 use crate::reports::StepReport;
 use crate::states_contact::StatesContact;
+use crate::used::{Function, Shared, Taken, Traversed, goes_on, in_use};
 
 /// The contact that a run leads.
 #[derive(IntoPyObjectRef)]
@@ -41,11 +46,20 @@ impl From<Py<StatesContact>> for Of {
 /// A contact on its way along a load: an iterator over the reports of its steps, made by `follow`.
 ///
 /// The contact shows its state after each step. A step or another run of the contact ends the run.
-#[pyclass(module = "viscocontact")]
+///
+/// >>> contact = ViscoelasticContact(Grid(32, 4e-3), Shape.sphere(10e-3), Material(Rheology.maxwell(1e6, 1.0)))
+/// >>> run = contact.follow(Load.force(0.5), 1.0, dt=0.25)
+/// >>> [report.time for report in run]
+/// [0.0, 0.25, 0.5, 0.75, 1.0]
+/// >>> run.progress["share_of_time"]
+/// 1.0
+#[pyclass(frozen, weakref, module = "viscocontact")]
 pub struct Run {
     of: Of,
     number: u64,
-    options: Options,
+    sampled: bool,
+    progress: Option<Function>,
+    is_told: AtomicBool,
 }
 
 /// Evaluates an expression with either contact of a run.
@@ -53,11 +67,11 @@ macro_rules! with_contact {
     ($self:ident, $py:ident, $borrow:ident, $contact:ident => $value:expr) => {
         match &$self.of {
             Of::Space(contact) => {
-                let $contact = contact.bind($py).$borrow();
+                let $contact = $borrow::try_from(contact.bind($py))?;
                 $value
             }
             Of::States(contact) => {
-                let $contact = contact.bind($py).$borrow();
+                let $contact = $borrow::try_from(contact.bind($py))?;
                 $value
             }
         }
@@ -67,7 +81,7 @@ macro_rules! with_contact {
 /// Evaluates an expression on the run of either contact.
 macro_rules! on_run {
     ($self:ident, $py:ident, $run:ident => $value:expr) => {
-        with_contact!($self, $py, borrow, contact => {
+        with_contact!($self, $py, Shared, contact => {
             let $run = contact.held.run_ref($self.number)?;
             $value
         })
@@ -75,17 +89,24 @@ macro_rules! on_run {
 }
 
 impl Run {
-    pub fn of(of: Of, number: u64, options: Options) -> Run {
-        Run { of, number, options }
+    pub fn of(of: Of, number: u64, sampled: bool, progress: Option<Function>) -> Run {
+        Run { of, number, sampled, progress, is_told: AtomicBool::new(false) }
     }
 
     /// Signals are looked for in each step: `list(run)` runs no Python between them.
     fn next(&self, py: Python<'_>) -> PyResult<Option<Report>> {
         py.check_signals()?;
-        let report = with_contact!(self, py, borrow_mut, contact => { let mut contact = contact; contact.next(py, self.number)? });
-        if let (Some(progress), Some(_)) = (&self.options.progress, &report) {
+        if self.is_told.load(Ordering::Relaxed) {
+            return Err(in_use::<Run>());
+        }
+        let report =
+            with_contact!(self, py, Taken, contact => { let mut contact = contact; contact.next(py, self.number)? });
+        if let (Some(progress), Some(_)) = (&self.progress, &report) {
             let share = on_run!(self, py, run => run.progress().share_of_time());
-            if progress.call1(py, (share,))?.extract::<bool>(py).is_ok_and(|goes_on| !goes_on) {
+            self.is_told.store(true, Ordering::Relaxed);
+            let goes_on = goes_on(Some(progress), (share,));
+            self.is_told.store(false, Ordering::Relaxed);
+            if !goes_on? {
                 return Err(Cancelled::new_err("the run was cancelled by its report of progress"));
             }
         }
@@ -95,8 +116,21 @@ impl Run {
 
 #[pymethods]
 impl Run {
-    fn __iter__(slf: PyRef<'_, Self>) -> PyRef<'_, Self> {
+    fn __iter__(slf: Bound<'_, Self>) -> Bound<'_, Self> {
         slf
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let at = on_run!(self, py, run => run.progress());
+        Ok(format!("Run({} steps, time={} s of {} s)", at.steps, digits(at.time), digits(at.until)))
+    }
+
+    fn __traverse__(&self, visit: PyVisit<'_>) -> Traversed {
+        match &self.of {
+            Of::Space(contact) => visit.call(contact),
+            Of::States(contact) => visit.call(contact),
+        }?;
+        self.progress.iter().try_for_each(|function| visit.call(&*function.0))
     }
 
     fn __next__(&self, py: Python<'_>) -> PyResult<Option<StepReport>> {
@@ -130,10 +164,10 @@ impl Run {
             (None, Some(value)) if value.is_finite() => Crossing::Down(value),
             _ => return Err(PyTypeError::new_err("give up or down, one of them, a finite value")),
         };
-        with_contact!(self, py, borrow_mut, contact => {
-            let quantity = watched(py, quantity, &contact.recipe)?;
+        with_contact!(self, py, Taken, contact => {
+            let (quantity, function) = watched(quantity, &contact.recipe)?;
             let mut contact = contact;
-            contact.held.stop_when(self.number, quantity, crossing)
+            contact.held.stop_when(self.number, quantity, function, crossing)
         })
     }
 
@@ -157,9 +191,9 @@ impl Run {
 
     /// The states of the last step at the times of `sample_at`, in the order of time.
     fn samples(&self, py: Python<'_>) -> PyResult<Vec<Sample>> {
-        with_contact!(self, py, borrow, contact => {
+        with_contact!(self, py, Shared, contact => {
             let run = contact.held.run_ref(self.number)?;
-            let taken = py.detach(|| asked_for(run, kept)).or_raise()?;
+            let taken = free(py, || asked_for(run, kept)).or_raise()?;
             let sample = |(report, field, kept, state): (_, _, Option<KeptFields>, _)| {
                 let contact = Led::into_object(state, py, contact.recipe.again(py))?;
                 let fields = kept.map(|kept| Py::new(py, Fields(kept))).transpose()?;
@@ -171,9 +205,9 @@ impl Run {
 
     /// The contact at a time [s] within the last step, its ends included, as exact as the steps.
     fn within_step(&self, py: Python<'_>, time: f64) -> PyResult<Py<PyAny>> {
-        with_contact!(self, py, borrow, contact => {
+        with_contact!(self, py, Shared, contact => {
             let run = contact.held.run_ref(self.number)?;
-            let state = py.detach(|| run.within_step(time)).or_raise()?;
+            let state = free(py, || run.within_step(time)).or_raise()?;
             state.into_object(py, contact.recipe.again(py))
         })
     }
@@ -187,9 +221,8 @@ impl Run {
     /// array([1., 2., 5.])
     fn table<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let mut columns: [Vec<f64>; 4] = Default::default();
-        let sampled = self.options.sample_at.is_some();
         while self.next(py)?.is_some() {
-            let passed = on_run!(self, py, run => py.detach(|| if sampled {
+            let passed = on_run!(self, py, run => free(py, || if self.sampled {
                 asked_for(run, |sample| sample.contact().state())
             } else {
                 Ok(vec![run.contact().state()])
@@ -206,7 +239,7 @@ impl Run {
         &self.of
     }
 
-    /// Steps taken, time [s], end [s], share of the time and share of the decades of time that are over.
+    /// A dict of the "steps" taken, "time" [s], its end "until" [s], "share_of_time" and "share_of_decades" that are over.
     #[getter]
     fn progress<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let at = on_run!(self, py, run => run.progress());
@@ -231,7 +264,7 @@ impl Run {
         let Of::Space(contact) = &self.of else {
             return Err(PyTypeError::new_err("only runs in space have an error budget"));
         };
-        let contact = contact.bind(py).borrow();
+        let contact = Shared::try_from(contact.bind(py))?;
         let budget = contact.held.run_ref(self.number)?.error_budget();
         Ok(dict! { py;
             "time": budget.time,
@@ -246,9 +279,9 @@ impl Run {
 
     /// Saves the run to a checkpoint now.
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        with_contact!(self, py, borrow_mut, contact => {
+        with_contact!(self, py, Taken, contact => {
             let mut contact = contact;
-            contact.held.run(self.number)?.0.save(path).or_raise()
+            contact.held.run(self.number)?.save(path).or_raise()
         })
     }
 }
@@ -257,14 +290,14 @@ type Quantity<C> = Box<dyn Fn(&C) -> f64 + Send + Sync>;
 type Named<C> = (&'static str, fn(&C) -> f64);
 
 /// The quantity of a name, or of a function of the contact.
-fn watched<C: Led>(py: Python<'_>, given: &Bound<'_, PyAny>, recipe: &Recipe) -> PyResult<Quantity<C>> {
-    if given.is_callable() {
-        let (function, recipe) = (given.clone().unbind(), recipe.again(py));
-        let value = move |py: Python<'_>, contact: &C| {
-            let contact = contact.clone().into_object(py, recipe.again(py))?;
-            function.call1(py, (contact,))?.extract(py)
+fn watched<C: Led>(given: &Bound<'_, PyAny>, recipe: &Arc<Recipe>) -> PyResult<(Quantity<C>, Option<Function>)> {
+    if let Ok(function) = given.extract::<Function>() {
+        let (called, recipe) = (function.clone(), Arc::clone(recipe));
+        let value = move |contact: &C| {
+            let contact = Python::attach(|py| contact.clone().into_object(py, recipe.again(py)))?;
+            called.call((contact,))
         };
-        return Ok(Box::new(move |contact| raised_number(Python::attach(|py| value(py, contact)), f64::NAN)));
+        return Ok((Box::new(move |contact| raised_number(value(contact), f64::NAN)), Some(function)));
     }
     let needed = "quantity: a name or a function of the contact is needed";
     let name: String = given.extract().map_err(|_| PyTypeError::new_err(needed))?;
@@ -275,7 +308,7 @@ fn watched<C: Led>(py: Python<'_>, given: &Bound<'_, PyAny>, recipe: &Recipe) ->
         ("max_pressure", |contact| contact.in_space().map_or(f64::NAN, |fields| fields.max_pressure())),
     ];
     let known = if C::IN_SPACE { &all[..] } else { &all[..3] };
-    Ok(Box::new(choice("quantity", &name, known)?))
+    Ok((Box::new(choice("quantity", &name, known)?), None))
 }
 
 /// What is kept of a sample.
@@ -290,6 +323,11 @@ pub fn asked_for<C: Led, T>(run: &vr::Run<'static, C>, of: impl Fn(&vr::Sample<'
 }
 
 /// A state of a run at a time of `sample_at`.
+///
+/// >>> contact = ViscoelasticContact(Grid(32, 4e-3), Shape.sphere(10e-3), Material(Rheology.maxwell(1e6, 1.0)))
+/// >>> run = contact.follow(Load.force(0.5), 1.0, sample_at=[0.5])
+/// >>> [sample.report.time for report in run for sample in run.samples()]
+/// [0.5]
 #[pyclass(frozen, module = "viscocontact")]
 pub struct Sample {
     report: Report,

@@ -1,6 +1,6 @@
 //! The parts of a contact, by keyword.
 
-use pyo3::exceptions::PyTypeError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use viscocontact::contact::{Builder, Edge, Frame, Settings, TimeRule};
@@ -8,7 +8,7 @@ use viscocontact::{self as vc, ViscoelasticContact};
 
 use crate::attraction::Attraction;
 use crate::errors::choice;
-use crate::grid::Grid;
+use crate::grid::{Count, Grid};
 use crate::kernels::InfluenceKernel;
 use crate::loads::history;
 use crate::materials::Material;
@@ -20,7 +20,7 @@ fn setting(settings: Settings, name: &str, value: &Bound<'_, PyAny>) -> PyResult
     let text = || value.extract::<String>();
     Ok(Some(match name {
         "tolerance" => settings.with_tolerance(value.extract()?),
-        "max_iterations" => settings.with_max_iterations(value.extract()?),
+        "max_iterations" => settings.with_max_iterations(value.extract::<Count>()?.0),
         "series_tolerance" => settings.with_series_tolerance(value.extract()?),
         "symmetry" => settings.with_symmetry(value.extract()?),
         "window" => settings.with_window(value.extract()?),
@@ -40,12 +40,34 @@ fn setting(settings: Settings, name: &str, value: &Bound<'_, PyAny>) -> PyResult
 pub fn settings(base: Settings, given: &Bound<'_, PyDict>) -> PyResult<Settings> {
     given.iter().try_fold(base, |settings, (name, value)| {
         let name: String = name.extract()?;
-        setting(settings, &name, &value)?.ok_or_else(|| unexpected(&name))
+        setting(settings, &name, &value)?.ok_or_else(|| unexpected("the contact problem", &name, &OPTIONS[5..]))
     })
 }
 
-pub fn unexpected(name: &str) -> PyErr {
-    PyTypeError::new_err(format!("got an unexpected keyword argument '{name}'"))
+/// The keywords of a contact.
+const OPTIONS: [&str; 13] = [
+    "counter_body",
+    "kernel",
+    "attraction",
+    "temperature",
+    "times",
+    "tolerance",
+    "max_iterations",
+    "time_rule",
+    "edge",
+    "series_tolerance",
+    "symmetry",
+    "window",
+    "frame",
+];
+
+/// The error of a keyword that `of` does not have: with the nearest one.
+pub fn unexpected(of: &str, name: &str, known: &[&str]) -> PyErr {
+    let nearest = Python::attach(|py| {
+        py.import("difflib")?.call_method1("get_close_matches", (name, known.to_vec(), 1))?.extract::<Vec<String>>()
+    });
+    let hint = nearest.ok().and_then(|names| names.first().map(|name| format!(": did you mean '{name}'?")));
+    PyTypeError::new_err(format!("{of}() got an unexpected keyword argument '{name}'{}", hint.unwrap_or_default()))
 }
 
 /// A builder of the parts: of the required ones, and of `options` by the names of the crate. A value of None is the default.
@@ -82,11 +104,16 @@ pub fn builder(
             "times" => {
                 let (first, last): (Bound<'_, PyAny>, f64) = value.extract()?;
                 match first.extract::<f64>() {
+                    Ok(first) if first.is_nan() || first >= last => {
+                        let text =
+                            format!("times = ({first}, {last}) is not allowed: the first must be less than the last");
+                        return Err(PyValueError::new_err(text));
+                    }
                     Ok(first) => builder.times(first..=last),
                     Err(_) => builder.times_of(&*history(&first)?, last),
                 }
             }
-            _ => return Err(unexpected(&name)),
+            _ => return Err(unexpected("a contact", &name, &OPTIONS)),
         };
     }
     Ok(builder.settings(changed))

@@ -8,10 +8,12 @@ use pyo3::types::{PyDict, PyTuple};
 use vc::geometry::{self as geo, Geometry};
 use viscocontact as vc;
 
-use crate::arrays::{Array, cell_values, to_array};
+use crate::arrays::{Array, cell_values, number, to_array};
 use crate::errors::{OrRaise, no_violation, nothing_raised};
 use crate::grid::Grid;
-use crate::recipe::Recipe;
+use crate::interrupt::free;
+use crate::recipe::{Recipe, Value};
+use crate::used::Function;
 
 /// A shape: the gap between the undeformed bodies over the plane of contact, `+inf` where there is nothing to touch.
 ///
@@ -22,7 +24,7 @@ use crate::recipe::Recipe;
 /// >>> ball.gap(Grid(2, 2e-3))
 /// array([[2.5e-05, 2.5e-05],
 ///        [2.5e-05, 2.5e-05]])
-#[pyclass(frozen, subclass, module = "viscocontact")]
+#[pyclass(frozen, subclass, weakref, module = "viscocontact")]
 pub struct Shape {
     pub geometry: Arc<dyn Geometry>,
     recipe: Recipe,
@@ -104,24 +106,25 @@ makers! {Shape, py:
 
     /// A wave along x1, A (1 − cos 2πx1/λ), of `amplitude` A and `wavelength` λ [m]; a pair of each makes the sum of a wave along x1
     /// and one along x2.
-    wavy(amplitude: Bound<'_, PyAny>, wavelength: Bound<'_, PyAny>) =
+    wavy(amplitude: Value<'_>, wavelength: Value<'_>) =
         match (amplitude.extract(), wavelength.extract()) {
         (Ok(amplitudes), Ok(wavelengths)) => geo::Wavy::in_two_directions(amplitudes, wavelengths),
         _ => geo::Wavy::new(amplitude.extract()?, wavelength.extract()?),
-    };
-
-    /// A gap by a function of the coordinates x1 and x2 [m], two floats, that returns a float [m].
-    ///
-    /// An exception of the function comes out of the call that needed the gap.
-    function(gap: Py<PyAny>) = {
-        let function = gap.clone_ref(py);
-        let call = move |x1: f64, x2: f64| Python::attach(|py| function.call1(py, (x1, x2))?.extract::<f64>(py));
-        Ok::<_, vc::Error>(geo::FnGeometry::fallible(call))
     };
 }
 
 #[pymethods]
 impl Shape {
+    /// A gap by a function of the coordinates x1 and x2 [m], two floats, that returns a float [m].
+    ///
+    /// An exception of the function comes out of the call that needed the gap.
+    #[staticmethod]
+    fn function(py: Python<'_>, gap: Function) -> PyResult<Shape> {
+        let function = gap.clone();
+        let made = geo::FnGeometry::fallible(move |x1: f64, x2: f64| function.call::<f64>((x1, x2)));
+        Ok(Shape::by(Recipe::new(py, "function", (gap.clone(),))?.calling([gap]), made))
+    }
+
     /// A gap [m] for each cell of `grid`: any array of its shape, `+inf` where there is nothing to touch, as beside the grid.
     ///
     /// Raises ValueError if the shapes differ, or a value is NaN.
@@ -129,11 +132,13 @@ impl Shape {
     /// >>> grid = Grid(4, 1e-3)
     /// >>> x1, x2 = grid.coordinates()
     /// >>> Shape.gap_on(grid, (x1**2 + x2**2) / 2e-2)
-    /// Shape.gap_on(Grid([4, 4], [0.001, 0.001]), <array [4, 4]>)
+    /// Shape.gap_on(Grid((4, 4), (0.001, 0.001)), <array [4, 4]>)
     #[staticmethod]
     fn gap_on(py: Python<'_>, grid: Bound<'_, Grid>, gap: Bound<'_, PyAny>) -> PyResult<Shape> {
         let on = grid.get().0.clone();
         let values = crate::arrays::field("gap", &gap, on.cells())?;
+        // as it was read: another thread may write into the array
+        let gap = to_array(py, values.clone(), &on.cells())?;
         Shape::made(py, "gap_on", (grid, gap), Arc::new(GapOnCells { grid: on, gap: values }))
     }
 
@@ -155,17 +160,28 @@ impl Shape {
         Shape::made(slf.py(), "__add__", (slf, other), Arc::new(sum))
     }
 
+    /// Arrays leave `+` to shapes, which refuse it: an array has no grid.
+    #[classattr]
+    #[pyo3(name = "__array_ufunc__")]
+    const ARRAY_UFUNC: Option<bool> = None;
+
+    /// `sum` of shapes begins with 0.
+    fn __radd__<'py>(slf: Bound<'py, Self>, other: &Bound<'py, PyAny>) -> PyResult<Bound<'py, Shape>> {
+        let needed = "a Shape is added to a Shape: Shape.gap_on(grid, array) makes one of an array";
+        if number(other) == Some(0.0) { Ok(slf) } else { Err(PyTypeError::new_err(needed)) }
+    }
+
     /// Checks the laws of shapes on a grid: a gap that is no NaN, something to touch, the same by points and by fields. Raises ValueError with
     /// the first violation.
     fn check(&self, py: Python<'_>, grid: &Grid) -> PyResult<()> {
-        let verdict = py.detach(|| geo::laws::all(&*self.geometry, &grid.0));
+        let verdict = free(py, || geo::laws::all(&*self.geometry, &grid.0));
         no_violation(self.geometry.failure(), verdict)
     }
 
     /// The gap at the centres of the cells of a grid [m].
     fn gap<'py>(&self, py: Python<'py>, grid: &Grid) -> PyResult<Array<'py>> {
         let mut gap = vec![0.0; grid.0.len()];
-        py.detach(|| self.geometry.fill_gap(&grid.0, &mut gap));
+        free(py, || self.geometry.fill_gap(&grid.0, &mut gap));
         nothing_raised(self.geometry.failure())?;
         to_array(py, gap, &grid.0.cells())
     }

@@ -1,5 +1,7 @@
 //! Friction and gradients of contacts on elastic states.
 
+use std::sync::Arc;
+
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -8,17 +10,18 @@ use viscocontact::states as st;
 use crate::arrays::{Array, to_array};
 use crate::elastic::ElasticContact;
 use crate::errors::OrRaise;
-use crate::interrupt::interruptible;
-use crate::loads::{Load, history};
+use crate::interrupt::{free, interruptible};
+use crate::loads::{Load, LoadHistory};
 use crate::reports::StepReport;
 use crate::states_contact::StatesContact;
+use crate::used::{Shared, Taken};
 
 /// A contact with the friction of keywords.
 pub fn rubbing(
     contact: st::StatesContact,
     friction: Option<f64>,
     estimated_friction: Option<f64>,
-    sheared_by: Option<&Bound<'_, PyAny>>,
+    sheared_by: Option<&Bound<'_, LoadHistory>>,
 ) -> PyResult<st::StatesContact> {
     let contact = match (friction, estimated_friction) {
         (None, None) => contact,
@@ -27,7 +30,7 @@ pub fn rubbing(
         _ => return Err(PyTypeError::new_err("give friction or estimated_friction, not both")),
     };
     match sheared_by {
-        Some(load) => contact.sheared_by(history(load)?).or_raise(),
+        Some(load) => contact.sheared_by(Arc::clone(&load.get().history)).or_raise(),
         None => Ok(contact),
     }
 }
@@ -37,29 +40,35 @@ impl StatesContact {
     /// `step`, with a load along the surface: a force, an approach as its displacement, or a spring.
     ///
     /// Raises `Slides` if the force is more than friction carries.
-    fn step_sheared(&mut self, py: Python<'_>, dt: f64, load: &Load, along: &Load) -> PyResult<StepReport> {
-        let (contact, load, along) = (self.held.free()?, load.load, along.load);
-        py.detach(|| contact.step_sheared(dt, load, along)).or_raise().map(StepReport)
+    fn step_sheared(
+        mut slf: Taken<'_, Self>,
+        py: Python<'_>,
+        dt: f64,
+        load: &Load,
+        along: &Load,
+    ) -> PyResult<StepReport> {
+        let (contact, load, along) = (slf.held.free()?, load.load, along.load);
+        free(py, || contact.step_sheared(dt, load, along)).or_raise().map(StepReport)
     }
 
     /// Where the work along the surface went since the contact was made [J]: "work" = "slip" + "stored" + "creep".
     #[getter]
-    fn lateral_work<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let of = self.get()?.lateral_work();
+    fn lateral_work<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let of = slf.get()?.lateral_work();
         Ok(dict! { py; "work": of.work, "slip": of.slip, "stored": of.stored, "creep": of.creep })
     }
 
     /// The traction along the surface [Pa], of the shape of the grid, from the states of a sweep with `keep_pressures`.
     #[getter]
-    fn shear<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
-        let contact = self.get()?;
-        let shear = py.detach(|| contact.shear()).or_raise()?;
-        to_array(py, shear, &self.cells()?)
+    fn shear<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Array<'py>> {
+        let contact = slf.get()?;
+        let shear = free(py, || contact.shear()).or_raise()?;
+        to_array(py, shear, &slf.cells()?)
     }
 
     /// The traction along the surface as a sum of elastic pressures: rows (level [m²], traction [Pa]), as of `tractions`.
-    fn shear_tractions<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
-        let rows: Vec<f64> = self.get()?.shear_tractions().flat_map(|(level, traction)| [level, traction]).collect();
+    fn shear_tractions<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Array<'py>> {
+        let rows: Vec<f64> = slf.get()?.shear_tractions().flat_map(|(level, traction)| [level, traction]).collect();
         let n = rows.len() / 2;
         to_array(py, rows, &[n, 2])
     }
@@ -76,10 +85,10 @@ impl StatesContact {
     /// >>> gradient = contact.approach_gradient()
     /// >>> gradient.shape, round(float(gradient.sum()), 9)
     /// ((32, 32), 1.0)
-    fn approach_gradient<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
-        let contact = self.get()?;
-        let gradient = interruptible(py, true, &self.cancel, || contact.approach_gradient_unless(&self.cancel))?;
-        to_array(py, gradient, &self.cells()?)
+    fn approach_gradient<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Array<'py>> {
+        let (contact, cancel) = (slf.get()?, &*slf.cancel);
+        let gradient = interruptible(py, true, cancel, || contact.approach_gradient_unless(cancel))?;
+        to_array(py, gradient, &slf.cells()?)
     }
 }
 
@@ -106,9 +115,9 @@ impl ElasticContact {
     /// >>> _ = contact.solve(Load.force(0.3))
     /// >>> round(float(contact.approach_gradient().sum()), 9)
     /// 1.0
-    fn approach_gradient<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
-        let fields = self.contact.fields();
-        let gradient = py.detach(|| fields.approach_gradient()).or_raise()?;
+    fn approach_gradient<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Array<'py>> {
+        let fields = slf.contact.fields();
+        let gradient = free(py, || fields.approach_gradient()).or_raise()?;
         to_array(py, gradient, &fields.grid().cells())
     }
 }

@@ -5,27 +5,30 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use numpy::Complex64;
-use pyo3::exceptions::PyTypeError;
+use pyo3::exceptions::{PyRuntimeError, PyTypeError};
+use pyo3::gc::PyVisit;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyTuple};
+use viscocontact::fields as vf;
 use viscocontact::sliding as sl;
 
 use crate::arrays::{number, vectors};
 use crate::errors::{Kept, OrRaise, choice, in_python};
-use crate::fields::Fields;
+use crate::fields::{Fields, Shown};
 use crate::grid::Grid;
-use crate::interrupt::{Listener, interruptible};
+use crate::interrupt::{Listener, free, interruptible};
 use crate::loads::{Load, loads};
 use crate::materials::Material;
 use crate::pictures::{Picture, quantity};
+use crate::recipe::digits;
 use crate::reports::figures;
 use crate::scene::builder;
 use crate::temperature::TimeTemperature;
+use crate::used::{Function, Shared, Taken, Traversed};
 
 /// The complex number that a function in Python gives at a frequency.
-pub fn complex(function: &Py<PyAny>, omega: f64, kept: &Kept) -> Complex64 {
-    let value = Python::attach(|py| function.call1(py, (omega,))?.extract(py));
-    kept.number(value, Complex64::new(f64::NAN, f64::NAN))
+pub fn complex(function: &Function, omega: f64, kept: &Kept) -> Complex64 {
+    kept.number(function.call((omega,)), Complex64::new(f64::NAN, f64::NAN))
 }
 
 /// A velocity along x1, or along x1 and x2.
@@ -35,7 +38,22 @@ pub fn velocity(given: &Bound<'_, PyAny>) -> PyResult<[f64; 2]> {
     along.map_or_else(|| given.extract(), Ok).map_err(|_: PyErr| PyTypeError::new_err(needed))
 }
 
-/// The state of a steady motion, in numbers.
+impl Shown for SteadySliding {
+    fn shown(&self) -> PyResult<vf::Fields<'_>> {
+        let needed = || PyRuntimeError::new_err("no state has been found yet: call at or sweep first");
+        if self.has_state { Ok(self.sliding.fields()) } else { Err(needed()) }
+    }
+}
+
+/// The state of a steady motion, in numbers. `lateral_force` is the integral of the pressure times the slope of the deformed surface, which converges fast
+/// with the cells; `Fields.lateral_force(shape)` takes the slopes of the shape instead, and agrees where cells resolve the contact.
+///
+/// >>> grid = Grid(32, 1e-3)
+/// >>> rubber = Material(Rheology.prony(1e6, [(1e7, 1e-4)]))
+/// >>> sliding = SteadySliding(grid, Shape.wavy((2e-6, 2e-6), (1e-3, 1e-3)), rubber, kernel=InfluenceKernel.periodic(grid))
+/// >>> report = sliding.at(0.5, Load.force(0.02))
+/// >>> abs(report.dissipation / 0.5 / report.lateral_force[0] - 1) < 1e-9
+/// True
 #[pyclass(frozen, module = "viscocontact")]
 pub struct SlidingReport(sl::SlidingReport);
 
@@ -44,11 +62,11 @@ impl SlidingReport {
     fn __repr__(&self) -> String {
         let of = &self.0;
         format!(
-            "SlidingReport(velocity={:?} m/s, force={:e} N, friction={:.6}, contact_area={:e} m²)",
+            "SlidingReport(velocity={:?} m/s, force={} N, friction={}, contact_area={} m²)",
             of.velocity,
-            of.force,
-            of.friction(),
-            of.contact_area
+            digits(of.force),
+            digits(of.friction()),
+            digits(of.contact_area)
         )
     }
 
@@ -58,6 +76,8 @@ impl SlidingReport {
         figures(py, &self.0.figures)
     }
 }
+
+numbers!(SlidingReport);
 
 getters! {SlidingReport, of:
     /// Velocity of the indenter over the bodies [m/s].
@@ -90,10 +110,14 @@ getters! {SlidingReport, of:
 ///
 /// Takes the arguments of `ViscoelasticContact`, and
 ///
-/// Parameters ---------- base : Material, optional The base of a layer
-/// (`Layer.bonded_to_material`), if it creeps otherwise. modulus : function, optional The complex
-/// contact modulus E′ + i E″ [Pa] at frequencies ≥ 0 [rad/s], in place of that of the material.
-/// counter_motion : "slides" or "rolls", optional What a counter-body that creeps does.
+/// Parameters
+/// ----------
+/// base : Material, optional
+///     The base of a layer (`Layer.bonded_to_material`), if it creeps otherwise.
+/// modulus : function, optional
+///     The complex contact modulus E′ + i E″ [Pa] at frequencies ≥ 0 [rad/s], in place of that of the material.
+/// counter_motion : "slides" or "rolls", optional
+///     What a counter-body that creeps does.
 ///
 /// >>> grid = Grid(32, 1e-3)
 /// >>> rubber = Material(Rheology.prony(1e6, [(1e7, 1e-4)]))
@@ -103,10 +127,14 @@ getters! {SlidingReport, of:
 /// True
 #[pyclass(module = "viscocontact")]
 pub struct SteadySliding {
-    pub sliding: sl::SteadySliding,
+    sliding: sl::SteadySliding,
     cancel: Arc<AtomicBool>,
     /// What the modulus raised.
     kept: Kept,
+    /// What the motion may call, and the objects that show the functions of its parts.
+    modulus: Option<Function>,
+    parts: Py<PyTuple>,
+    has_state: bool,
 }
 
 #[pymethods]
@@ -121,8 +149,8 @@ impl SteadySliding {
         grid: Bound<'_, Grid>,
         geometry: Bound<'_, PyAny>,
         material: Bound<'_, Material>,
-        base: Option<&Material>,
-        modulus: Option<Py<PyAny>>,
+        base: Option<Bound<'_, Material>>,
+        modulus: Option<Function>,
         counter_motion: Option<&str>,
         options: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<SteadySliding> {
@@ -133,25 +161,39 @@ impl SteadySliding {
         }
         let kept = Kept::default();
         let raised = kept.clone();
-        let sliding = match (base, modulus) {
-            (None, None) => py.detach(|| builder.build_sliding()),
-            (Some(base), None) => py.detach(|| builder.build_sliding_on(base.material.clone())),
+        let bodies = base.as_ref().map(|base| base.get().material.clone());
+        let sliding = match (bodies, modulus.clone()) {
+            (None, None) => free(py, || builder.build_sliding()),
+            (Some(base), None) => free(py, || builder.build_sliding_on(base)),
             (None, Some(modulus)) => {
-                py.detach(|| builder.build_sliding_by(move |omega| complex(&modulus, omega, &raised)))
+                free(py, || builder.build_sliding_by(move |omega| complex(&modulus, omega, &raised)))
             }
             _ => return Err(PyTypeError::new_err("give base or modulus, not both")),
         };
         let cancel = Arc::<AtomicBool>::default();
         let sliding = kept.raise_or(sliding.or_raise())?.cancelled_by(Arc::clone(&cancel));
-        Ok(SteadySliding { sliding, cancel, kept })
+        let parts = (geometry, material, base, options).into_pyobject(py)?.unbind();
+        Ok(SteadySliding { sliding, cancel, kept, modulus, parts, has_state: false })
+    }
+
+    fn __traverse__(&self, visit: PyVisit<'_>) -> Traversed {
+        visit.call(&self.parts)?;
+        self.modulus.iter().try_for_each(|function| visit.call(&*function.0))
     }
 
     /// The state under a load, a force or an approach, of the indenter that moves with `velocity` [m/s]: along x1, or a pair along x1 and
     /// x2. Ctrl-C ends the search within an iteration, and keeps the state found last.
-    fn at(&mut self, py: Python<'_>, velocity: &Bound<'_, PyAny>, load: &Load) -> PyResult<SlidingReport> {
+    fn at(
+        mut slf: Taken<'_, Self>,
+        py: Python<'_>,
+        velocity: &Bound<'_, PyAny>,
+        load: &Load,
+    ) -> PyResult<SlidingReport> {
         let (velocity, load) = (self::velocity(velocity)?, load.load);
-        let found = interruptible(py, true, &self.cancel, || self.sliding.at(velocity, load));
-        self.kept.raise_or(found).map(SlidingReport)
+        let SteadySliding { sliding, cancel, kept, has_state, .. } = &mut *slf;
+        let found = kept.raise_or(interruptible(py, true, cancel, || sliding.at(velocity, load)));
+        *has_state |= found.is_ok();
+        found.map(SlidingReport)
     }
 
     /// The states of all velocities [m/s] along x1, or pairs along x1 and x2, under each of the loads, at each of the temperatures [K].
@@ -162,13 +204,13 @@ impl SteadySliding {
     /// Returns the table of the states, each found from the one before: neighbours cost least.
     #[pyo3(signature = (velocities, loads, *, law=None, temperatures=None, progress=None))]
     fn sweep(
-        &mut self,
+        mut slf: Taken<'_, Self>,
         py: Python<'_>,
         velocities: &Bound<'_, PyAny>,
         loads: &Bound<'_, PyAny>,
         law: Option<&TimeTemperature>,
         temperatures: Option<Vec<f64>>,
-        progress: Option<Py<PyAny>>,
+        progress: Option<Function>,
     ) -> PyResult<SlidingTable> {
         let velocities = vectors("velocities", velocities)?;
         let mut sweep = sl::SlidingSweep::new(velocities, self::loads(loads)?);
@@ -178,16 +220,18 @@ impl SteadySliding {
             _ => return Err(PyTypeError::new_err("law and temperatures belong together")),
         }
         let mut listener = Listener::new(progress);
-        let SteadySliding { sliding, cancel, kept, .. } = self;
+        let SteadySliding { sliding, cancel, kept, has_state, .. } = &mut *slf;
         let table =
             interruptible(py, true, cancel, || sliding.sweep_with(&sweep, |_, share| listener.goes_on((share,))));
-        listener.result(kept.raise_or(table)).map(SlidingTable)
+        let table = listener.result(kept.raise_or(table))?;
+        *has_state |= !table.states().is_empty();
+        Ok(SlidingTable(table))
     }
 
     /// The fields of the state found last, with all that a contact shows: patches, profiles, distributions, stress.
     #[getter]
-    fn fields(&self) -> Fields {
-        Fields(self.sliding.fields().keep())
+    fn fields(slf: Shared<'_, Self>) -> PyResult<Fields> {
+        Ok(Fields(slf.shown()?.keep()))
     }
 
     /// Bytes that a contact in steady motion takes at most, before it is built. Takes the arguments of `ViscoelasticContact`.
@@ -202,8 +246,8 @@ impl SteadySliding {
         builder(grid, geometry, material, options)?.sliding_memory().or_raise()
     }
 
-    fn __repr__(&self) -> String {
-        let [n1, n2] = self.sliding.fields().grid().cells();
+    fn __repr__(slf: Shared<'_, Self>) -> String {
+        let [n1, n2] = slf.sliding.fields().grid().cells();
         format!("SteadySliding({n1} × {n2} cells)")
     }
 }
@@ -212,7 +256,7 @@ impl SteadySliding {
 type Column = (&'static str, fn(&sl::SweptState) -> f64);
 
 /// A column in a picture: name, unit and value.
-type Shown = (&'static str, &'static str, fn(&sl::SlidingReport) -> f64);
+type Charted = (&'static str, &'static str, fn(&sl::SlidingReport) -> f64);
 
 const COLUMNS: [Column; 11] = [
     ("velocity1", |state| state.report.velocity[0]),
@@ -229,6 +273,13 @@ const COLUMNS: [Column; 11] = [
 ];
 
 /// The states of a sweep.
+///
+/// >>> grid = Grid(32, 1e-3)
+/// >>> rubber = Material(Rheology.prony(1e6, [(1e7, 1e-4)]))
+/// >>> sliding = SteadySliding(grid, Shape.wavy((2e-6, 2e-6), (1e-3, 1e-3)), rubber, kernel=InfluenceKernel.periodic(grid))
+/// >>> table = sliding.sweep([0.1, 1.0], Load.force(0.02))
+/// >>> len(table), table.columns()["velocity1"]
+/// (2, array([0.1, 1. ]))
 #[pyclass(frozen, module = "viscocontact")]
 pub struct SlidingTable(sl::SlidingTable);
 
@@ -243,7 +294,7 @@ impl SlidingTable {
     /// A picture of a column over the speed, a curve for each temperature and load.
     #[pyo3(signature = (column="friction"))]
     fn picture(&self, py: Python<'_>, column: &str) -> PyResult<Picture> {
-        let charts: [(&str, Shown); 5] = [
+        let charts: [(&str, Charted); 5] = [
             ("friction", ("coefficient of friction", "", sl::SlidingReport::friction)),
             ("approach", ("approach", "m", |report| report.approach)),
             ("contact_area", ("contact area", "m²", |report| report.contact_area)),
@@ -251,12 +302,12 @@ impl SlidingTable {
             ("dissipation", ("dissipation", "W", sl::SlidingReport::dissipation)),
         ];
         let (name, unit, value) = choice("column", column, &charts)?;
-        py.detach(|| self.0.chart(quantity(name, unit), value).draw()).or_raise().map(Picture)
+        free(py, || self.0.chart(quantity(name, unit), value).draw()).or_raise().map(Picture)
     }
 
     /// Writes the table as a CSV file.
     fn write_csv(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        py.detach(|| self.0.write_csv(path)).or_raise()
+        free(py, || self.0.write_csv(path)).or_raise()
     }
 
     fn __len__(&self) -> usize {

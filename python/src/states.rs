@@ -5,28 +5,29 @@ use std::sync::Arc;
 
 use numpy::IntoPyArray;
 use pyo3::exceptions::PyTypeError;
+use pyo3::gc::PyVisit;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use viscocontact::contact::Settings;
-use viscocontact::output::{Metadata, read_states, write_states};
+use viscocontact::output::{Metadata, read_states, states_from_bytes, states_to_bytes, write_states};
 use viscocontact::run::{Contact, Stepping};
 use viscocontact::states as st;
 use viscocontact::{self as vc};
 
-use crate::arrays::{Array, column, mapped, never, table, to_array};
+use crate::arrays::{ALL, Array, FROM_ZERO, column, mapped, never, table, to_array};
 use crate::errors::OrRaise;
-use crate::grid::Grid;
+use crate::grid::{Count, Grid};
 use crate::held::Led;
-use crate::interrupt::Listener;
+use crate::interrupt::{Listener, free};
 use crate::kernels::InfluenceKernel;
 use crate::loads::{Tilts, history, tilts};
 use crate::materials::Material;
-use crate::recipe::{Recipe, Reduced};
+use crate::recipe::{Recipe, Reduced, Value};
 use crate::run::asked_for;
 use crate::scene::settings;
-use crate::scratch::{bytes_of, file_of};
 use crate::shapes::geometries;
 use crate::temperature::TemperatureHistory;
+use crate::used::{Function, Traversed};
 
 /// The elastic states of a surface, found once: any material, history and temperature on it is then a matter of microseconds a step.
 ///
@@ -40,11 +41,23 @@ pub struct ElasticStates {
     pub states: Arc<st::ElasticStates>,
     /// None of a sweep and of a file, whose pickles hold the states.
     recipe: Option<Recipe>,
+    /// What a sweep is of, which shows the functions of its shape.
+    surface: Option<Py<PyAny>>,
 }
 
 impl ElasticStates {
     fn by(recipe: Recipe, states: Arc<st::ElasticStates>) -> ElasticStates {
-        ElasticStates { states, recipe: Some(recipe) }
+        ElasticStates { states, recipe: Some(recipe), surface: None }
+    }
+}
+
+impl ElasticStates {
+    /// The call that makes these states again.
+    fn made(&self, py: Python<'_>) -> PyResult<Recipe> {
+        match &self.recipe {
+            Some(recipe) => Ok(recipe.again(py)),
+            None => Recipe::new(py, "_of_bytes", (PyBytes::new(py, &free(py, || states_to_bytes(&self.states))),)),
+        }
     }
 }
 
@@ -65,7 +78,7 @@ makers! {ElasticStates, py:
     true_sphere(radius: f64) = viscocontact_identify::tips::sphere(radius);
 
     /// States of an upright body from rows (level [m²], approach [m], stiffness over modulus [m], contact area [m²]).
-    from_table(rows: Bound<'_, PyAny>) = {
+    from_table(rows: Value<'_>) = {
         let table: Vec<_> = table::<4>("rows", &rows)?.into_iter().map(|[a, b, c, d]| (a, b, c, d)).collect();
         st::ElasticStates::from_table(&table)
     };
@@ -76,7 +89,7 @@ impl ElasticStates {
     /// Reads states that `save` has written. They hold no surface, so that `StatesContact.fields` is not possible.
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf) -> PyResult<ElasticStates> {
-        Ok(ElasticStates { states: py.detach(|| read_states(&path)).or_raise()?, recipe: None })
+        Ok(ElasticStates { states: free(py, || read_states(&path)).or_raise()?, recipe: None, surface: None })
     }
 
     /// The states of a shape on a grid, up to a `level` [m²], an `approach` [m], or what a `material` needs along a `load` to the time
@@ -121,11 +134,11 @@ impl ElasticStates {
         kernel: Option<Bound<'_, InfluenceKernel>>,
         accuracy: f64,
         keep_pressures: bool,
-        max_states: Option<usize>,
+        max_states: Option<Count>,
         at: Tilts,
         tilt: Tilts,
         temperature: Option<Bound<'_, TemperatureHistory>>,
-        progress: Option<Py<PyAny>>,
+        progress: Option<Function>,
         settings: Option<Bound<'_, PyDict>>,
     ) -> PyResult<ElasticStates> {
         let reach = match (level, approach, &material, &load, until) {
@@ -152,41 +165,41 @@ impl ElasticStates {
             sweep = sweep.keep_pressures();
         }
         if let Some(max_states) = max_states {
-            sweep = sweep.max_states(max_states);
+            sweep = sweep.max_states(max_states.0);
         }
         if let Some(given) = &settings {
             sweep = sweep.settings(self::settings(Settings::default().with_tolerance(1e-8), given)?);
         }
         let mut listener = Listener::new(progress);
-        let states = py.detach(|| sweep.run_with(reach, |states| listener.goes_on((states.len(),))));
+        let states = free(py, || sweep.run_with(reach, |states| listener.goes_on((states.len(),))));
         let states = listener.result(states.or_raise())?;
-        Ok(ElasticStates { states, recipe: None })
+        Ok(ElasticStates { states, recipe: None, surface: Some(geometry.unbind()) })
     }
 
     /// Writes the states as an NPZ archive.
     #[pyo3(signature = (path, title=""))]
     fn save(&self, py: Python<'_>, path: PathBuf, title: &str) -> PyResult<()> {
-        py.detach(|| write_states(path, &self.states, &Metadata::new(title))).or_raise()
+        free(py, || write_states(path, &self.states, &Metadata::new(title))).or_raise()
     }
 
     /// Approach of the elastic contact [m] at levels [m²].
     fn approach<'py>(&self, level: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        mapped("level", level, |level| self.states.approach(level), never)
+        mapped("level", level, FROM_ZERO, |level| self.states.approach(level), never)
     }
 
     /// Level [m²] of the elastic contact at approaches [m]; NaN beyond the last state.
     fn level_at<'py>(&self, approach: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        mapped("approach", approach, |approach| self.states.level_at(approach), never)
+        mapped("approach", approach, ALL, |approach| self.states.level_at(approach), never)
     }
 
     /// Contact area [m²] at levels [m²].
     fn area<'py>(&self, level: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        mapped("level", level, |level| self.states.area(level), never)
+        mapped("level", level, FROM_ZERO, |level| self.states.area(level), never)
     }
 
     /// Stiffness over the contact modulus [m] at levels [m²].
     fn stiffness<'py>(&self, level: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        mapped("level", level, |level| self.states.stiffness(level), never)
+        mapped("level", level, FROM_ZERO, |level| self.states.stiffness(level), never)
     }
 
     /// The states as arrays: "level" [m²], "approach" [m], "stiffness" [m], "area" [m²], "cells", "patches".
@@ -206,7 +219,7 @@ impl ElasticStates {
 
     /// Conductance of the contact at levels [m²] of two conductors of `resistivities`, electrical [Ω m] in S, or thermal [m K/W] in W/K.
     fn conductance<'py>(&self, level: &Bound<'py, PyAny>, resistivities: [f64; 2]) -> PyResult<Bound<'py, PyAny>> {
-        mapped("level", level, |level| self.states.conductance(level, resistivities), never)
+        mapped("level", level, FROM_ZERO, |level| self.states.conductance(level, resistivities), never)
     }
 
     /// The curves of many materials on this surface in one call.
@@ -241,7 +254,7 @@ impl ElasticStates {
         let mut values = Vec::with_capacity(3 * materials.len() * times.len());
         for material in &materials {
             let material = &material.get().material;
-            let rows = py.detach(|| -> vc::Result<Vec<[f64; 4]>> {
+            let rows = free(py, || -> vc::Result<Vec<[f64; 4]>> {
                 let contact = st::StatesContact::new(&self.states, material)?;
                 let run = contact.into_follow(Arc::clone(&history), Stepping::adaptive(tolerance), until);
                 let (mut run, mut rows) = (run.sample_at(&times)?, Vec::with_capacity(times.len()));
@@ -272,19 +285,26 @@ impl ElasticStates {
     /// The states of a pickle.
     #[staticmethod]
     fn _of_bytes(bytes: &Bound<'_, PyBytes>) -> PyResult<ElasticStates> {
-        let file = file_of(bytes)?;
-        Ok(ElasticStates { states: read_states(&file.0).or_raise()?, recipe: None })
+        Ok(ElasticStates { states: states_from_bytes(bytes.as_bytes()).or_raise()?, recipe: None, surface: None })
     }
 
     /// A sweep becomes its states, without the surface: `StatesContact.fields` is then not possible.
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        let (py, class) = (slf.py(), slf.get_type());
-        if let Some(recipe) = &slf.get().recipe {
-            return recipe.reduce(class);
-        }
-        let states = &slf.get().states;
-        let bytes = bytes_of(py, "npz", |file| write_states(file, states, &Metadata::new("")))?;
-        Recipe::new(py, "_of_bytes", (bytes,))?.reduce(class)
+        slf.get().made(slf.py())?.reduce(slf.get_type())
+    }
+
+    fn __eq__(slf: &Bound<'_, Self>, other: &Bound<'_, ElasticStates>) -> PyResult<bool> {
+        let key = slf.get().made(slf.py())?.key(slf.get_type())?;
+        key.eq(other.get().made(slf.py())?.key(slf.get_type())?)
+    }
+
+    fn __hash__(&self) -> usize {
+        self.states.states().len()
+    }
+
+    fn __traverse__(&self, visit: PyVisit<'_>) -> Traversed {
+        self.recipe.iter().try_for_each(|recipe| recipe.traverse(&visit))?;
+        visit.call(&self.surface)
     }
 }
 

@@ -11,13 +11,15 @@ use crate::arrays::{Array, to_array};
 use crate::errors::OrRaise;
 use crate::fields::Fields;
 use crate::held::Held;
-use crate::loads::Load;
+use crate::interrupt::free;
+use crate::loads::{Load, LoadHistory};
 use crate::materials::Material;
-use crate::recipe::Recipe;
+use crate::recipe::{Recipe, digits};
 use crate::reports::StepReport;
 use crate::sheared::rubbing;
 use crate::states::ElasticStates;
 use crate::temperature::TemperatureHistory;
+use crate::used::{Shared, Taken};
 
 /// A contact of one material on elastic states, advanced like a `ViscoelasticContact`.
 ///
@@ -48,7 +50,8 @@ use crate::temperature::TemperatureHistory;
 #[pyclass(module = "viscocontact")]
 pub struct StatesContact {
     pub held: Held<st::StatesContact>,
-    pub recipe: Recipe,
+    /// Shared with the functions of its run alone.
+    pub recipe: Arc<Recipe>,
     pub cancel: Arc<AtomicBool>,
 }
 
@@ -58,12 +61,12 @@ impl StatesContact {
     }
 
     pub fn of(contact: st::StatesContact, recipe: Recipe) -> StatesContact {
-        StatesContact { held: Held::Free(contact), recipe, cancel: Arc::default() }
+        StatesContact { held: Held::Free(contact), recipe: Arc::new(recipe), cancel: Arc::default() }
     }
 
     pub fn next(&mut self, py: Python<'_>, run: u64) -> PyResult<Option<ct::StepReport>> {
-        let (run, _) = self.held.run(run)?;
-        py.detach(|| run.next_step()).or_raise()
+        let run = self.held.run(run)?;
+        free(py, || run.next_step()).or_raise()
     }
 }
 
@@ -97,6 +100,7 @@ impl StatesContact {
         if exact_states {
             contact = contact.with_exact_states().or_raise()?;
         }
+        let sheared_by = sheared_by.map(|load| LoadHistory::any(&load)).transpose()?;
         contact = rubbing(contact, friction, estimated_friction, sheared_by.as_ref())?;
         let keywords = dict! { py;
             "temperature": temperature,
@@ -112,34 +116,34 @@ impl StatesContact {
     }
 
     /// Advances by `dt` [s] to a load; `dt` = 0 is a jump.
-    fn step(&mut self, py: Python<'_>, dt: f64, load: &Load) -> PyResult<StepReport> {
-        let (contact, load) = (self.held.free()?, load.load);
-        py.detach(|| contact.step(dt, load)).or_raise().map(StepReport)
+    fn step(mut slf: Taken<'_, Self>, py: Python<'_>, dt: f64, load: &Load) -> PyResult<StepReport> {
+        let (contact, load) = (slf.held.free()?, load.load);
+        free(py, || contact.step(dt, load)).or_raise().map(StepReport)
     }
 
     /// The pressure [Pa] of the shape of the grid, from the states of a sweep with `keep_pressures`.
     #[getter]
-    fn pressure<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
-        let contact = self.get()?;
-        let pressure = py.detach(|| contact.pressure()).or_raise()?;
-        to_array(py, pressure, &self.cells()?)
+    fn pressure<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Array<'py>> {
+        let contact = slf.get()?;
+        let pressure = free(py, || contact.pressure()).or_raise()?;
+        to_array(py, pressure, &slf.cells()?)
     }
 
     /// The fields within a relative `accuracy`.
     #[pyo3(signature = (accuracy=1e-3))]
-    fn fields(&self, py: Python<'_>, accuracy: f64) -> PyResult<Fields> {
-        let contact = self.get()?;
-        py.detach(|| contact.fields(accuracy)).or_raise().map(Fields)
+    fn fields(slf: Shared<'_, Self>, py: Python<'_>, accuracy: f64) -> PyResult<Fields> {
+        let contact = slf.get()?;
+        free(py, || contact.fields(accuracy)).or_raise().map(Fields)
     }
 
     /// The state as it is, to come back to by `restore`: a copy of the contact.
-    fn snapshot(&self, py: Python<'_>) -> PyResult<StatesContact> {
-        Ok(StatesContact::of(self.get()?.clone(), self.recipe.again(py)))
+    fn snapshot(slf: Shared<'_, Self>, py: Python<'_>) -> PyResult<StatesContact> {
+        Ok(StatesContact::of(slf.get()?.clone(), slf.recipe.again(py)))
     }
 
     /// Goes back to a state of this contact, or of a copy of it. Raises ValueError if the snapshot is of another contact.
-    fn restore(&mut self, snapshot: &StatesContact) -> PyResult<()> {
-        self.held.free()?.restore(snapshot.get()?).or_raise()
+    fn restore(mut slf: Taken<'_, Self>, snapshot: Shared<'_, StatesContact>) -> PyResult<()> {
+        slf.held.free()?.restore(snapshot.get()?).or_raise()
     }
 
     /// The pressure as a sum of elastic ones, p = Σ w_i (p_e(l_i) − p_e(l_i−1)): rows (level l_i [m²], traction w_i [Pa]), where p_e(l) is
@@ -153,16 +157,16 @@ impl StatesContact {
     /// >>> level, traction = contact.tractions().T
     /// >>> bool(np.isclose((traction * np.diff(level, prepend=0.0)).sum(), contact.force))    # the force of p_e(l) is l
     /// True
-    fn tractions<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
-        let rows: Vec<f64> = self.get()?.tractions().flat_map(|(level, traction)| [level, traction]).collect();
+    fn tractions<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Array<'py>> {
+        let rows: Vec<f64> = slf.get()?.tractions().flat_map(|(level, traction)| [level, traction]).collect();
         let n = rows.len() / 2;
         to_array(py, rows, &[n, 2])
     }
 
-    fn __repr__(&self) -> PyResult<String> {
-        let of = self.get()?;
-        let (time, force, approach) = (of.time(), of.force(), of.approach());
-        Ok(format!("StatesContact(time={time} s, force={force:e} N, approach={approach:e} m)"))
+    fn __repr__(slf: Shared<'_, Self>) -> PyResult<String> {
+        let of = slf.get()?;
+        let [time, force, approach] = [of.time(), of.force(), of.approach()].map(digits);
+        Ok(format!("StatesContact(time={time} s, force={force} N, approach={approach} m)"))
     }
 }
 

@@ -13,8 +13,11 @@ use crate::contact::ViscoelasticContact;
 use crate::errors::{OrRaise, choice};
 use crate::fields::{Showing, Shown};
 use crate::grid::Grid;
+use crate::interrupt::free;
 use crate::kernels::{InfluenceKernel, axis};
+use crate::recipe::digits;
 use crate::reports::StepReport;
+use crate::used::{Shared, Taken};
 use crate::writers::{FORMATS, metadata};
 
 /// The stress below the surface [Pa]: tension positive, x3 the depth. Components are in the order 11, 22, 33, 12, 13, 23.
@@ -74,13 +77,18 @@ impl SubsurfaceStress {
         nu: f64,
     ) -> PyResult<SubsurfaceStress> {
         let pressure = field("pressure", pressure, kernel.kernel.grid().cells())?;
-        py.detach(|| ob::SubsurfaceStress::new(&kernel.kernel, &pressure, nu)).or_raise().map(SubsurfaceStress)
+        free(py, || ob::SubsurfaceStress::new(&kernel.kernel, &pressure, nu)).or_raise().map(SubsurfaceStress)
+    }
+
+    fn __repr__(&self) -> String {
+        let [n1, n2] = self.0.grid().cells();
+        format!("SubsurfaceStress({n1} × {n2} cells, least_depth={} m)", digits(self.0.least_depth()))
     }
 
     /// The components below each cell at a `depth` [m]: an array of shape (n1, n2, 6).
     #[pyo3(signature = (depth, *, quantity=None))]
     fn on_plane<'py>(&self, py: Python<'py>, depth: f64, quantity: Option<&str>) -> PyResult<Array<'py>> {
-        let values = py.detach(|| self.0.on_plane(depth)).or_raise()?;
+        let values = free(py, || self.0.on_plane(depth)).or_raise()?;
         shown(py, &values, quantity, &self.0.grid().cells())
     }
 
@@ -96,7 +104,7 @@ impl SubsurfaceStress {
         quantity: Option<&str>,
     ) -> PyResult<(Array<'py>, Array<'py>)> {
         let along = axis(along)?;
-        let section = py.detach(|| self.0.on_section(along, at, &depths)).or_raise()?;
+        let section = free(py, || self.0.on_section(along, at, &depths)).or_raise()?;
         let n = section.positions.len();
         let values = shown(py, &section.values, quantity, &[n, depths.len()])?;
         Ok((to_array(py, section.positions, &[n])?, values))
@@ -105,7 +113,7 @@ impl SubsurfaceStress {
     /// The components below each cell at each of the `depths` [m]: an array of shape (depths, n1, n2, 6).
     #[pyo3(signature = (depths, *, quantity=None))]
     fn in_volume<'py>(&self, py: Python<'py>, depths: Vec<f64>, quantity: Option<&str>) -> PyResult<Array<'py>> {
-        let volume = py.detach(|| self.0.in_volume(&depths)).or_raise()?;
+        let volume = free(py, || self.0.in_volume(&depths)).or_raise()?;
         let [n1, n2] = self.0.grid().cells();
         shown(py, &volume.values, quantity, &[depths.len(), n1, n2])
     }
@@ -114,7 +122,7 @@ impl SubsurfaceStress {
     #[pyo3(signature = (points, *, quantity=None))]
     fn at<'py>(&self, py: Python<'py>, points: &Bound<'py, PyAny>, quantity: Option<&str>) -> PyResult<Array<'py>> {
         let points: Vec<[f64; 3]> = table("points", points)?;
-        let values = py.detach(|| self.0.at(&points)).or_raise()?;
+        let values = free(py, || self.0.at(&points)).or_raise()?;
         shown(py, &values, quantity, &[points.len()])
     }
 
@@ -123,7 +131,7 @@ impl SubsurfaceStress {
     #[pyo3(signature = (depths, quantity="von_mises"))]
     fn greatest<'py>(&self, py: Python<'py>, depths: Vec<f64>, quantity: &str) -> PyResult<Bound<'py, PyDict>> {
         let quantity = choice("quantity", quantity, &QUANTITIES)?;
-        let peak = py.detach(|| self.0.greatest(&depths, quantity)).or_raise()?;
+        let peak = free(py, || self.0.greatest(&depths, quantity)).or_raise()?;
         Ok(dict! { py;
             "value": peak.value,
             "position": peak.position,
@@ -149,7 +157,7 @@ impl SubsurfaceStress {
         let format: Format = choice("format", format, &FORMATS)?;
         let (contact, metadata) = (contact.shown()?, metadata(title, notes)?);
         let write = || write_stress(path, format, contact, &self.0.in_volume(&depths)?, &metadata);
-        py.detach(write).or_raise()
+        free(py, write).or_raise()
     }
 }
 
@@ -178,21 +186,27 @@ pub struct StressHistory(ct::StressHistory);
 impl StressHistory {
     #[new]
     #[pyo3(signature = (contact, *, in_counter_body=false))]
-    fn new(contact: &ViscoelasticContact, in_counter_body: bool) -> PyResult<StressHistory> {
+    fn new(contact: Shared<'_, ViscoelasticContact>, in_counter_body: bool) -> PyResult<StressHistory> {
         let of = if in_counter_body { ct::StressHistory::of_counter_body } else { ct::StressHistory::new };
         of(contact.get()?).or_raise().map(StressHistory)
     }
 
     /// Takes in the step that the contact has made since the last call.
-    fn record(&mut self, py: Python<'_>, contact: &ViscoelasticContact) -> PyResult<()> {
+    fn record(mut slf: Taken<'_, Self>, py: Python<'_>, contact: Shared<'_, ViscoelasticContact>) -> PyResult<()> {
         let contact = contact.get()?;
-        py.detach(|| self.0.record(contact)).or_raise()
+        let history = &mut slf.0;
+        free(py, || history.record(contact)).or_raise()
     }
 
     /// The stress of the state recorded last.
-    fn stress(&self, py: Python<'_>, contact: &ViscoelasticContact) -> PyResult<SubsurfaceStress> {
+    fn stress(
+        slf: Shared<'_, Self>,
+        py: Python<'_>,
+        contact: Shared<'_, ViscoelasticContact>,
+    ) -> PyResult<SubsurfaceStress> {
         let contact = contact.get()?;
-        py.detach(|| self.0.stress(contact)).or_raise().map(SubsurfaceStress)
+        let history = &slf.0;
+        free(py, || history.stress(contact)).or_raise().map(SubsurfaceStress)
     }
 }
 
@@ -220,25 +234,35 @@ fn energies<'py>(py: Python<'py>, of: ct::Energies) -> PyResult<Bound<'py, PyDic
 #[pymethods]
 impl EnergyBalance {
     #[new]
-    fn new(contact: &ViscoelasticContact) -> PyResult<EnergyBalance> {
+    fn new(contact: Shared<'_, ViscoelasticContact>) -> PyResult<EnergyBalance> {
         ct::EnergyBalance::new(contact.get()?).or_raise().map(EnergyBalance)
+    }
+
+    fn __repr__(slf: Shared<'_, Self>) -> String {
+        let of = slf.0.energies();
+        format!(
+            "EnergyBalance(work={} J, stored={} J, viscous={} J)",
+            digits(of.work),
+            digits(of.stored),
+            digits(of.viscous)
+        )
     }
 
     /// Takes in the last step, of which this is the report, and returns `energies`.
     fn record<'py>(
-        &mut self,
+        mut slf: Taken<'_, Self>,
         py: Python<'py>,
-        contact: &ViscoelasticContact,
+        contact: Shared<'_, ViscoelasticContact>,
         report: &StepReport,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let contact = contact.get()?;
-        energies(py, py.detach(|| self.0.record(contact, &report.0)).or_raise()?)
+        let (contact, balance) = (contact.get()?, &mut slf.0);
+        energies(py, free(py, || balance.record(contact, &report.0)).or_raise()?)
     }
 
     /// Since the bodies were undisturbed [J]: the "work" of the load, what is "stored", what the creep dissipated ("viscous"), what was "lost"
     /// in jumps, and the "imbalance" of these, the error of the steps.
     #[getter]
-    fn energies<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        energies(py, self.0.energies())
+    fn energies<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        energies(py, slf.0.energies())
     }
 }

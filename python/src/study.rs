@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use pyo3::exceptions::PyValueError;
+use pyo3::gc::PyVisit;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use viscocontact::plot::Chart;
@@ -15,14 +16,15 @@ use viscocontact::{Axis, Error, ViscoelasticContact as Contact};
 use crate::contact::ViscoelasticContact;
 use crate::errors::{OrRaise, raised_number};
 use crate::fields::Fields;
-use crate::grid::Grid;
-use crate::interrupt::Listener;
+use crate::grid::{Grid, count};
+use crate::interrupt::{Listener, free};
 use crate::kernels::InfluenceKernel;
 use crate::loads::history;
 use crate::materials::Material;
 use crate::recipe::Recipe;
 use crate::shapes::Shape;
 use crate::temperature::TemperatureHistory;
+use crate::used::{Function, Traversed};
 
 const QUANTITIES: [(&str, Observable); 4] = [
     ("approach", Observable::Approach),
@@ -98,20 +100,22 @@ impl Study {
         periods: (Option<f64>, Option<f64>),
         line: Option<f64>,
         temperature: Option<Py<TemperatureHistory>>,
-        cells: usize,
+        #[pyo3(from_py_with = count)] cells: usize,
         work: Option<f64>,
-        progress: Option<Py<PyAny>>,
+        progress: Option<Function>,
     ) -> PyResult<Study> {
         let (history, accuracy) = (history(load)?, Accuracy::new(accuracy).or_raise()?);
         let (geometry, body) = (&*shape.get().geometry, &material.get().material);
         let (made, temperature_of) =
             (kernel.as_ref(), temperature.as_ref().map(|temperature| &temperature.get().history));
-        let own = |(name, of): (Bound<'_, PyAny>, Bound<'_, PyAny>)| Ok((name.extract::<String>()?, of.unbind()));
-        let own: Vec<(String, Py<PyAny>)> =
+        let own = |(name, of): (Bound<'_, PyAny>, Bound<'_, PyAny>)| {
+            Ok((name.extract::<String>()?, of.extract::<Function>()?))
+        };
+        let own: Vec<(String, Function)> =
             quantities.map(|given| given.iter().map(own).collect::<PyResult<_>>()).transpose()?.unwrap_or_default();
         let asked = ask.iter().map(|name| observable(name)).collect::<PyResult<Vec<_>>>()?;
         let mut listener = Listener::new(progress);
-        let study = py.detach(|| {
+        let study = free(py, || {
             let scene = |grid: viscocontact::Grid, settings| {
                 let kernel = kernel_on(made, &grid)?;
                 let builder = Contact::builder(grid).geometry(geometry).material(body.clone()).settings(settings);
@@ -145,12 +149,19 @@ impl Study {
         Ok(Study { study: listener.result(study.or_raise())?, parts: (shape, material), kernel, temperature })
     }
 
+    fn __traverse__(&self, visit: PyVisit<'_>) -> Traversed {
+        visit.call(&self.parts.0)?;
+        visit.call(&self.parts.1)?;
+        visit.call(&self.kernel)?;
+        visit.call(&self.temperature)
+    }
+
     /// The contact of the finest run: at its end, or at rest, to run it again with `tolerance` and `stops`.
     #[pyo3(signature = (*, at_rest=false))]
     fn contact(&self, py: Python<'_>, at_rest: bool) -> PyResult<ViscoelasticContact> {
         let contact = if at_rest {
             let builder = self.study.builder().clone();
-            py.detach(|| builder.build()).or_raise()?
+            free(py, || builder.build()).or_raise()?
         } else {
             self.study.contact().clone()
         };
@@ -188,12 +199,12 @@ impl Study {
 
     /// Writes the table as a CSV file.
     fn write_csv(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        py.detach(|| self.study.write_csv(&path)).or_raise()
+        free(py, || self.study.write_csv(&path)).or_raise()
     }
 
     /// Draws the changes from mesh to mesh over the cells, as a PNG or SVG file.
     fn save_picture(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        py.detach(|| Chart::save(&self.study.chart(), &path)).or_raise()
+        free(py, || Chart::save(&self.study.chart(), &path)).or_raise()
     }
 
     fn __str__(&self) -> String {
@@ -247,9 +258,9 @@ fn observable(name: &str) -> PyResult<Observable> {
 }
 
 /// The value of a function in Python of the fields.
-fn value_of(of: &Py<PyAny>, fields: viscocontact::fields::Fields<'_>) -> f64 {
+fn value_of(of: &Function, fields: viscocontact::fields::Fields<'_>) -> f64 {
     let kept = fields.keep();
-    raised_number(Python::attach(|py| of.call1(py, (Fields(kept),))?.extract(py)), f64::NAN)
+    raised_number(of.call((Fields(kept),)), f64::NAN)
 }
 
 /// The kernel that a function in Python makes on a grid.

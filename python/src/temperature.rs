@@ -5,10 +5,11 @@ use std::sync::Arc;
 use pyo3::prelude::*;
 use viscocontact::rheology as rh;
 
-use crate::arrays::{mapped, never, number, pairs};
+use crate::arrays::{FROM_ZERO, mapped, never, number, pairs};
 use crate::errors::{OrRaise, raised_number};
-use crate::recipe::Recipe;
+use crate::recipe::{Recipe, Value};
 use crate::rheology::Rheology;
+use crate::used::Function;
 
 /// How temperature shifts the time scale: a_T, by which all times of a material are multiplied at a temperature T [K]; and b_T, by which its
 /// moduli are, if the law has vertical factors.
@@ -36,7 +37,7 @@ makers! {TimeTemperature, py:
     arrhenius(energy: f64, reference: f64) = rh::TimeTemperature::arrhenius(energy, reference);
 
     /// Rows of temperature [K] and shift factor a_T, about the `reference` [K].
-    table(table: Bound<'_, PyAny>, reference: f64) = rh::TimeTemperature::table(&pairs("table", &table)?, reference);
+    table(table: Value<'_>, reference: f64) = rh::TimeTemperature::table(&pairs("table", &table)?, reference);
 }
 
 #[pymethods]
@@ -62,7 +63,7 @@ impl TimeTemperature {
     }
 
     /// The same with moduli that are b_T times those at the reference: rows of temperature [K] and vertical factor b_T.
-    pub fn with_vertical_factors(slf: Bound<'_, Self>, table: Bound<'_, PyAny>) -> PyResult<TimeTemperature> {
+    pub fn with_vertical_factors(slf: Bound<'_, Self>, table: Value<'_>) -> PyResult<TimeTemperature> {
         let law = slf.get().law.clone().with_vertical_factors(&pairs("table", &table)?).or_raise()?;
         Ok(TimeTemperature { law, recipe: Recipe::new(slf.py(), "with_vertical_factors", (slf, table))? })
     }
@@ -111,6 +112,11 @@ made_by_calls!(TimeTemperature);
 /// law : TimeTemperature
 /// temperature : float, rows of (time [s], temperature [K]), or a function of time
 /// corners : times at which a function of time has corners [s]
+///
+/// >>> law = TimeTemperature.arrhenius(80e3, 300.0)
+/// >>> warming = TemperatureHistory(law, [(0.0, 300.0), (10.0, 320.0)])
+/// >>> warming.at(5.0), warming.reduced_time(0.0, 10.0) > 10.0      # it creeps faster when warm
+/// (310.0, True)
 #[pyclass(frozen, module = "viscocontact")]
 pub struct TemperatureHistory {
     pub history: rh::TemperatureHistory,
@@ -124,22 +130,21 @@ impl TemperatureHistory {
     fn new(
         py: Python<'_>,
         law: Bound<'_, TimeTemperature>,
-        temperature: Bound<'_, PyAny>,
+        temperature: Value<'_>,
         corners: Vec<f64>,
     ) -> PyResult<TemperatureHistory> {
         let given = law.get().law.clone();
+        let function: Option<Function> = temperature.extract().ok();
         let history = if let Some(constant) = number(&temperature) {
             rh::TemperatureHistory::constant(given, constant)
-        } else if temperature.is_callable() {
-            let function = temperature.clone().unbind();
-            let at = move |t: f64| raised_number(Python::attach(|py| function.call1(py, (t,))?.extract(py)), f64::NAN);
-            rh::TemperatureHistory::function(given, at, &corners)
+        } else if let Some(function) = function.clone() {
+            rh::TemperatureHistory::function(given, move |t| raised_number(function.call((t,)), f64::NAN), &corners)
         } else {
             rh::TemperatureHistory::table(given, &pairs("temperature", &temperature)?)
         };
         Ok(TemperatureHistory {
             history: history.or_raise()?,
-            recipe: Recipe::new(py, "", (law, temperature, corners))?,
+            recipe: Recipe::new(py, "", (law, temperature, corners))?.calling(function.into_iter().collect::<Vec<_>>()),
         })
     }
 
@@ -151,7 +156,7 @@ impl TemperatureHistory {
 
     /// The temperature [K] at times [s].
     fn at<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        mapped("t", t, |t| self.history.at(t), never)
+        mapped("t", t, FROM_ZERO, |t| self.history.at(t), never)
     }
 
     /// The reduced time between two times [s].

@@ -10,8 +10,10 @@ use viscocontact::output::{self as vo, Earlier, Field, Format, Metadata};
 use crate::contact::ViscoelasticContact;
 use crate::errors::{OrRaise, choice};
 use crate::fields::{Showing, Shown};
+use crate::interrupt::free;
 use crate::reports::StepReport;
 use crate::states_contact::StatesContact;
+use crate::used::{Shared, Taken};
 
 pub fn metadata(title: &str, notes: Option<&Bound<'_, PyDict>>) -> PyResult<Metadata> {
     notes.into_iter().flatten().try_fold(Metadata::new(title), |metadata, (key, value)| {
@@ -26,11 +28,11 @@ const EARLIER: [(&str, Earlier); 3] =
 macro_rules! with_either {
     ($given:ident, $contact:ident => $value:expr) => {
         if let Ok(contact) = $given.cast::<ViscoelasticContact>() {
-            let held = contact.borrow();
+            let held = Shared::try_from(contact)?;
             let $contact = held.get()?;
             $value.or_raise()
         } else if let Ok(contact) = $given.cast::<StatesContact>() {
-            let held = contact.borrow();
+            let held = Shared::try_from(contact)?;
             let $contact = held.get()?;
             $value.or_raise()
         } else {
@@ -51,8 +53,22 @@ macro_rules! with_either {
 ///     Additional columns, with their units in brackets.
 /// earlier : "refuse" (default: FileExistsError), "replace", or "continue"
 ///     "continue" goes on after the state of the contact, as after `resume`: what the file has of later times is removed.
+///
+/// `to_dataframe()` reads it back; elsewhere `pandas.read_csv(path, comment="#")`.
+///
+/// >>> import pathlib, tempfile
+/// >>> path = pathlib.Path(tempfile.mkdtemp(), "history.csv")
+/// >>> contact = ViscoelasticContact(Grid(16, 4e-3), Shape.sphere(10e-3), Material(Rheology.maxwell(1e6, 1.0)))
+/// >>> history = CsvHistory(path, contact)
+/// >>> for report in contact.follow(Load.force(0.5), 0.2, dt=0.1):
+/// ...     history.record(contact, report)
+/// >>> len(path.read_text().splitlines())      # the scene, the names, and a row for each step
+/// 5
 #[pyclass(module = "viscocontact")]
-pub struct CsvHistory(vo::CsvHistory);
+pub struct CsvHistory {
+    history: vo::CsvHistory,
+    path: PathBuf,
+}
 
 #[pymethods]
 impl CsvHistory {
@@ -68,14 +84,26 @@ impl CsvHistory {
     ) -> PyResult<CsvHistory> {
         let (metadata, earlier) = (metadata(title, notes)?, choice("earlier", earlier, &EARLIER)?);
         let columns: Vec<&str> = columns.iter().map(String::as_str).collect();
-        with_either!(contact, contact => vo::CsvHistory::create(path, &metadata, contact, &columns, earlier))
-            .map(CsvHistory)
+        let history =
+            with_either!(contact, contact => vo::CsvHistory::create(&path, &metadata, contact, &columns, earlier))?;
+        Ok(CsvHistory { history, path })
+    }
+
+    /// The path of the file.
+    #[getter]
+    fn path(slf: Shared<'_, Self>) -> PathBuf {
+        slf.path.clone()
     }
 
     /// Appends the row of the last step, with the values of the additional columns.
     #[pyo3(signature = (contact, report, columns=vec![]))]
-    fn record(&mut self, contact: &Bound<'_, PyAny>, report: &StepReport, columns: Vec<f64>) -> PyResult<()> {
-        with_either!(contact, contact => self.0.record(contact, &report.0, &columns))
+    fn record(
+        mut slf: Taken<'_, Self>,
+        contact: &Bound<'_, PyAny>,
+        report: &StepReport,
+        columns: Vec<f64>,
+    ) -> PyResult<()> {
+        with_either!(contact, contact => slf.history.record(contact, &report.0, &columns))
     }
 }
 
@@ -97,6 +125,12 @@ pub const FIELDS: [(&str, Field); 4] = [
 /// format : "npz" (default; numpy.load) or "vtk" (ParaView, PyVista)
 /// fields : sequence of "pressure", "displacement", "gap", "traction"; by default those of the contact
 /// title, notes, earlier : as of `CsvHistory`
+///
+/// >>> import pathlib, tempfile
+/// >>> contact = ViscoelasticContact(Grid(16, 4e-3), Shape.sphere(10e-3), Material(Rheology.maxwell(1e6, 1.0)))
+/// >>> frames = FrameSeries(pathlib.Path(tempfile.mkdtemp(), "frames"), contact)
+/// >>> frames.record(contact).suffix
+/// '.npz'
 #[pyclass(module = "viscocontact")]
 pub struct FrameSeries(vo::FrameSeries);
 
@@ -124,9 +158,10 @@ impl FrameSeries {
     }
 
     /// Writes the state of the contact as the next frame, and returns its path.
-    fn record(&mut self, py: Python<'_>, contact: Showing<'_>) -> PyResult<PathBuf> {
+    fn record(mut slf: Taken<'_, Self>, py: Python<'_>, contact: Showing<'_>) -> PyResult<PathBuf> {
         let contact = contact.shown()?;
-        py.detach(|| self.0.record(contact)).or_raise()
+        let series = &mut slf.0;
+        free(py, || series.record(contact)).or_raise()
     }
 }
 
@@ -139,7 +174,7 @@ getters! {FrameSeries, of:
 impl ViscoelasticContact {
     /// The scene as JSON on one line: grid, settings, materials, units and conventions.
     #[pyo3(signature = (title="", notes=None))]
-    fn describe(&self, title: &str, notes: Option<&Bound<'_, PyDict>>) -> PyResult<String> {
-        Ok(metadata(title, notes)?.json(self.get()?))
+    fn describe(slf: Shared<'_, Self>, title: &str, notes: Option<&Bound<'_, PyDict>>) -> PyResult<String> {
+        Ok(metadata(title, notes)?.json(slf.get()?))
     }
 }

@@ -29,6 +29,11 @@ def test_every_item_says_what_it_is():
     assert sum(1 for _ in documented()) > 300
 
 
+def test_every_class_and_function_has_an_example():
+    missing = [item.__name__ for item in ITEMS if ">>>" not in (item.__doc__ or "")]
+    assert not missing
+
+
 def test_examples_of_docstrings():
     finder, names = doctest.DocTestParser(), {name: getattr(viscocontact, name) for name in viscocontact.__all__}
     examples = [(name, text) for name, text in documented() if text and ">>>" in text]
@@ -63,11 +68,12 @@ def test_the_version_is_that_of_the_crate(repository):
 
 
 def test_the_licence_is_that_of_the_crate(repository):
-    assert (repository / "python" / "LICENSE").read_text() == (repository / "LICENSE").read_text()
+    assert (repository / "python/licences/viscocontact.txt").read_text() == (repository / "LICENSE").read_text()
 
 
 @pytest.mark.parametrize("page, fence", [("README.md", "python"), ("../docs/guide/results.md", "py")])
-def test_programs_of_the_pages(repository, page, fence, capsys):
+def test_programs_of_the_pages(repository, page, fence, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
     programs = re.findall(rf"```{fence}\n(.*?)```", (repository / "python" / page).read_text(encoding="utf-8"), re.DOTALL)
     assert programs
     for program in programs:

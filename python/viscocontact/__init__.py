@@ -11,12 +11,15 @@ axis. Pressure is positive in compression, displacement positive into the bodies
 >>> contact.pressure.shape
 (64, 64)
 
-Errors are ValueError, OSError, MemoryError, NotImplementedError (a combination that is not covered), `ConvergenceError` and `Cancelled`,
-with the value, the range allowed and the cure. An exception of a function that you wrote comes out as itself.
+Errors are ValueError, TypeError, OSError, MemoryError, NotImplementedError (a combination that is not covered), `ConvergenceError`, `Cancelled` and
+RuntimeError (an object that is computing meanwhile), with the value, the range allowed and the remedy. An exception of a function that you
+wrote comes out as itself.
 """
 
-from viscocontact import _native
+from viscocontact import _adapters, _native
 from viscocontact._native import *  # noqa: F403
+
+_adapters.attach()
 
 __all__ = [name for name in dir(_native) if not name.startswith("_")]
 __version__ = _native.__version__

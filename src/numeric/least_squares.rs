@@ -35,6 +35,11 @@ pub struct LeastSquares {
 }
 
 impl LeastSquares {
+    /// Where a search has ended before, after so many steps.
+    pub fn at(coordinates: Vec<f64>, residuals: Vec<f64>, steps: usize) -> LeastSquares {
+        LeastSquares { coordinates, residuals, steps, reductions: [1.0; 2] }
+    }
+
     /// The sum of squares.
     pub fn sum(&self) -> f64 {
         square(&self.residuals)
@@ -70,7 +75,8 @@ pub fn least_squares<E>(
     is_enough: impl Fn(&LeastSquares) -> bool,
 ) -> Result<LeastSquares, E> {
     let (mut damping, mut growth) = (DAMPING[1], 2.0);
-    let mut at = LeastSquares { residuals: residuals(&start)?, coordinates: start, steps: 0, reductions: [1.0; 2] };
+    let first = residuals(&start)?;
+    let mut at = LeastSquares::at(start, first, 0);
     while !is_enough(&at) {
         let (model, sum) = (Linear::new(slopes(&at.coordinates)?, &at.residuals), at.sum());
         let (promised, coordinates, residuals) = loop {

@@ -56,7 +56,7 @@ pub use metadata::Metadata;
 pub use npy::{write_field_npy, write_npy};
 pub use series::FrameSeries;
 #[cfg(all(feature = "npy", feature = "states"))]
-pub use states::{read_states, write_states};
+pub use states::{read_states, states_from_bytes, states_to_bytes, write_states};
 #[cfg(feature = "stress")]
 pub use stress::write_stress;
 

@@ -1,7 +1,7 @@
 //! Elastic states as archives in the NPZ format of NumPy.
 
 use std::collections::BTreeMap;
-use std::io::{BufReader, Read};
+use std::io::{self, BufReader, Cursor, Read, Seek, Write};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -71,6 +71,18 @@ fn figure(number: f64) -> Option<f64> {
 /// # Errors
 /// If the file cannot be written.
 pub fn write_states(path: impl AsRef<Path>, states: &ElasticStates, metadata: &Metadata) -> Result<()> {
+    replace(path.as_ref(), |out| archive(out, states, metadata))
+}
+
+/// What [`write_states`] writes, in memory: for pickles, and for messages between processes.
+///
+/// Needs the feature `npy`.
+pub fn states_to_bytes(states: &ElasticStates) -> Vec<u8> {
+    let mut out = Cursor::new(Vec::new());
+    archive(&mut out, states, &Metadata::new("")).map(|()| out.into_inner()).unwrap_or_default()
+}
+
+fn archive(out: impl Write + Seek, states: &ElasticStates, metadata: &Metadata) -> io::Result<()> {
     let table = states.states();
     let count = table.len();
     let [tilts, tilt_rates] = [|state: &ElasticState| state.tilt, |state: &ElasticState| state.tilt_rate]
@@ -81,32 +93,30 @@ pub fn write_states(path: impl AsRef<Path>, states: &ElasticStates, metadata: &M
         Tilt::Free { at } => [1.0, at],
     });
     let sizes = [states.error, states.first_level, states.poisson.unwrap_or(f64::NAN)];
-    replace(path.as_ref(), |out| {
-        let mut archive = Archive::empty(out);
-        for (name, value, _) in COLUMNS {
-            archive.add(name, &[count], &table.iter().map(value).collect::<Vec<f64>>())?;
-        }
-        archive.add("tilt", &[count, 2], &tilts)?;
-        archive.add("tilt_rate", &[count, 2], &tilt_rates)?;
-        archive.add("rest", &[3], &[approach, tilt1, tilt2])?;
-        archive.add("given_tilt", &[2, 2], given.as_flattened())?;
-        archive.add("error_first_level_poisson", &[3], &sizes)?;
-        if let Some(grid) = states.grid() {
-            let ([n1, n2], [l1, l2]) = (grid.cells(), grid.lengths());
-            archive.add("grid", &[2, 2], &[n1 as f64, n2 as f64, l1, l2])?;
-        }
-        if !states.pressures.is_empty() {
-            let counts: Vec<f64> = states.pressures.iter().map(|pressed| pressed.cells.len() as f64).collect();
-            let cells: Vec<f64> =
-                states.pressures.iter().flat_map(|pressed| pressed.cells.iter().map(|&k| k.into())).collect();
-            let pressures: Vec<f64> =
-                states.pressures.iter().flat_map(|pressed| pressed.pressures.iter().copied()).collect();
-            archive.add("pressed_cells_of_state", &[count], &counts)?;
-            archive.add("pressed_cells", &[cells.len()], &cells)?;
-            archive.add("pressure", &[pressures.len()], &pressures)?;
-        }
-        archive.finish(&metadata.brief())
-    })
+    let mut archive = Archive::empty(out);
+    for (name, value, _) in COLUMNS {
+        archive.add(name, &[count], &table.iter().map(value).collect::<Vec<f64>>())?;
+    }
+    archive.add("tilt", &[count, 2], &tilts)?;
+    archive.add("tilt_rate", &[count, 2], &tilt_rates)?;
+    archive.add("rest", &[3], &[approach, tilt1, tilt2])?;
+    archive.add("given_tilt", &[2, 2], given.as_flattened())?;
+    archive.add("error_first_level_poisson", &[3], &sizes)?;
+    if let Some(grid) = states.grid() {
+        let ([n1, n2], [l1, l2]) = (grid.cells(), grid.lengths());
+        archive.add("grid", &[2, 2], &[n1 as f64, n2 as f64, l1, l2])?;
+    }
+    if !states.pressures.is_empty() {
+        let counts: Vec<f64> = states.pressures.iter().map(|pressed| pressed.cells.len() as f64).collect();
+        let cells: Vec<f64> =
+            states.pressures.iter().flat_map(|pressed| pressed.cells.iter().map(|&k| k.into())).collect();
+        let pressures: Vec<f64> =
+            states.pressures.iter().flat_map(|pressed| pressed.pressures.iter().copied()).collect();
+        archive.add("pressed_cells_of_state", &[count], &counts)?;
+        archive.add("pressed_cells", &[cells.len()], &cells)?;
+        archive.add("pressure", &[pressures.len()], &pressures)?;
+    }
+    archive.finish(&metadata.brief())
 }
 
 /// Reads elastic states that [`write_states`] has written. They hold no surface:
@@ -119,8 +129,24 @@ pub fn write_states(path: impl AsRef<Path>, states: &ElasticStates, metadata: &M
 /// ([`FileError::Unreadable`](crate::FileError::Unreadable)).
 pub fn read_states(path: impl AsRef<Path>) -> Result<Arc<ElasticStates>> {
     let path = path.as_ref();
+    let opened = open(path)?;
+    let length = opened.metadata().map_err(|error| refused(path, &error))?.len();
+    states_of(path, &read_arrays(path, BufReader::new(opened), length)?)
+}
+
+/// The states of the bytes of [`states_to_bytes`], or of a file.
+///
+/// Needs the feature `npy`.
+///
+/// # Errors
+/// As [`read_states`].
+pub fn states_from_bytes(bytes: &[u8]) -> Result<Arc<ElasticStates>> {
+    let path = Path::new("bytes in memory");
+    states_of(path, &read_arrays(path, Cursor::new(bytes), bytes.len() as u64)?)
+}
+
+fn states_of(path: &Path, arrays: &BTreeMap<String, Vec<f64>>) -> Result<Arc<ElasticStates>> {
     let refused = |reason: String| refused(path, &reason);
-    let arrays = read_arrays(path)?;
     let array = |name: &str, length: usize| match arrays.get(name) {
         Some(values) if values.len() == length => Ok(&values[..]),
         Some(values) => Err(refused(format!("the array {name} has {} numbers, not {length}", values.len()))),
@@ -175,16 +201,14 @@ fn refused(path: &Path, reason: &dyn ToString) -> Error {
 }
 
 /// The arrays of real numbers in an archive, by their names.
-fn read_arrays(path: &Path) -> Result<BTreeMap<String, Vec<f64>>> {
-    let opened = open(path)?;
-    // arrays are not compressed
-    let length = opened.metadata().map_err(|error| refused(path, &error))?.len();
-    let mut archive = ZipArchive::new(BufReader::new(opened)).map_err(|error| refused(path, &error))?;
+fn read_arrays(path: &Path, file: impl Read + Seek, length: u64) -> Result<BTreeMap<String, Vec<f64>>> {
+    let mut archive = ZipArchive::new(file).map_err(|error| refused(path, &error))?;
     let mut arrays = BTreeMap::new();
     for index in 0..archive.len() {
         let entry = archive.by_index(index).map_err(|error| refused(path, &error))?;
         let name = entry.name().map_err(|error| refused(path, &error))?.trim_end_matches(".npy").to_owned();
         let mut bytes = Vec::new();
+        // arrays are not compressed
         entry.take(length).read_to_end(&mut bytes).map_err(|error| refused(path, &error))?;
         if let Some(values) = npy::numbers(&bytes) {
             arrays.insert(name, values);

@@ -81,6 +81,12 @@ impl Picture {
         }
     }
 
+    /// The bytes of the PNG file, in memory: for notebooks and servers.
+    pub fn to_png(&self) -> Vec<u8> {
+        let mut out = Vec::new();
+        png_file(&mut out, self.size, &self.rgb).map(|()| out).unwrap_or_default()
+    }
+
     /// Writes the SVG document. Cells are an image of a pixel each: a map takes as much as in a PNG file, where
     /// rectangles would take a hundred bytes for each cell.
     fn write_svg(&self, out: &mut impl io::Write) -> io::Result<()> {

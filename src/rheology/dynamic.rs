@@ -5,8 +5,8 @@ use num_complex::Complex64;
 use crate::rheology::{CreepSpectrum, RelaxationSpectrum};
 
 impl RelaxationSpectrum {
-    /// The complex modulus G*(ω) = G′ + i G″ \[Pa\] at the angular frequency `omega` ≥ 0 \[rad/s\]: stress over
-    /// strain in steady oscillation, both ∝ e^(iωt).
+    /// The complex modulus G*(ω) = G′ + i G″ \[Pa\] at the angular frequency `omega` \[rad/s\]: stress over
+    /// strain in steady oscillation, both ∝ e^(iωt). G*(−ω) is its complex conjugate.
     ///
     /// G* = G_∞ + iωη + Σ G_k iωτ_k/(1 + iωτ_k)
     ///
@@ -41,23 +41,23 @@ impl RelaxationSpectrum {
 }
 
 impl CreepSpectrum {
-    /// The complex compliance J*(ω) = J′ − i J″ = 1/G*(ω) \[1/Pa\] at the angular frequency `omega` > 0
-    /// \[rad/s\]: strain over stress in steady oscillation.
+    /// The complex compliance J*(ω) = J′ − i J″ = 1/G*(ω) \[1/Pa\] at the angular frequency `omega`
+    /// \[rad/s\]: strain over stress in steady oscillation. J*(−ω) is its complex conjugate.
     ///
     /// J* = J_g − iφ/ω + Σ J_k/(1 + iωλ_k)
     pub fn complex_compliance(&self, omega: f64) -> Complex64 {
         let flow = if self.fluidity() > 0.0 { self.fluidity() / omega } else { 0.0 };
         // 1/(1 + iy) = (1/y − i)/(y + 1/y)
         let branch = |&(c, lambda): &(f64, f64)| {
-            let y = (omega * lambda).clamp(1e-200, 1e200);
+            let y = (omega * lambda).abs().clamp(1e-200, 1e200).copysign(omega);
             Complex64::new(1.0 / y, -1.0) * (c / (y + 1.0 / y))
         };
         Complex64::new(self.glassy(), -flow) + self.terms().iter().map(branch).sum::<Complex64>()
     }
 
-    /// The complex modulus G*(ω) = 1/J*(ω) \[Pa\] at the angular frequency `omega` > 0 \[rad/s\].
+    /// The complex modulus G*(ω) = 1/J*(ω) \[Pa\] at the angular frequency `omega` \[rad/s\]: of a fluid 0 at 0.
     pub fn complex_modulus(&self, omega: f64) -> Complex64 {
-        self.complex_compliance(omega).finv()
+        if omega == 0.0 && self.fluidity() > 0.0 { Complex64::ZERO } else { self.complex_compliance(omega).finv() }
     }
 
     /// Loss factor tan δ = G″/G′ = J″/J′ at `omega` > 0 \[rad/s\].

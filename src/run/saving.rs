@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 use crate::contact::checkpoint::SavedRun;
 use crate::contact::{StepReport, ViscoelasticContact};
 use crate::error::Result;
+use crate::file::failed;
 use crate::run::Contact;
 use crate::run::autosave::Autosave;
 use crate::run::follow::Run;
@@ -59,6 +60,28 @@ impl ViscoelasticContact {
     /// ([`FileError::NotAFile`](crate::FileError::NotAFile)).
     pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
         self.save_with::<(Progress, StepControl)>(path.as_ref(), None)
+    }
+
+    /// What [`ViscoelasticContact::save`] writes, in memory: for pickles, and for messages between processes. On ranks the first one has it.
+    ///
+    /// Needs the feature `checkpoint`.
+    ///
+    /// # Errors
+    /// If a rank is lost.
+    pub fn to_bytes(&self) -> Result<Vec<u8>> {
+        self.bytes_with::<(Progress, StepControl)>(None).map_err(|error| failed(Path::new("bytes in memory"), error))
+    }
+
+    /// [`ViscoelasticContact::resume`] from the bytes of [`ViscoelasticContact::to_bytes`], or of a file.
+    ///
+    /// Needs the feature `checkpoint`.
+    ///
+    /// # Errors
+    /// As [`ViscoelasticContact::resume`].
+    pub fn resume_bytes(&mut self, bytes: &[u8]) -> Result<()> {
+        let run = self.resume_bytes_with::<(Progress, StepControl)>(bytes)?;
+        self.saved_run = run.map(|run| Arc::new(run) as _);
+        Ok(())
     }
 
     /// Puts a saved state in the place of this one. The contact must be built as the one was that was saved: same

@@ -343,19 +343,19 @@ impl ElasticStates {
 
     /// Approach of the load point at a level, of the elastic contact \[m\].
     pub fn approach(&self, level: f64) -> f64 {
-        self.rest.approach + self.depth(level)
+        known(level, self.rest.approach + self.depth(level))
     }
 
     /// The level of the elastic contact at an approach of the load point \[m²\]: 0 without contact, NaN beyond the
     /// last state. An elastic body of contact modulus E* carries the force E* times it.
     pub fn level_at(&self, approach: f64) -> f64 {
         let level = self.level_where(0.0, approach - self.rest.approach);
-        if level == f64::INFINITY { f64::NAN } else { level }
+        if level == f64::INFINITY { f64::NAN } else { known(approach, level) }
     }
 
     /// Contact area at a level \[m²\].
     pub fn area(&self, level: f64) -> f64 {
-        self.power_law(level, |state| state.area, 2.0)
+        known(level, self.power_law(level, |state| state.area, 2.0))
     }
 
     /// The state at a level, or else the state below it, or the first one; `None` without contact.
@@ -371,7 +371,7 @@ impl ElasticStates {
 
     /// Stiffness over the contact modulus at a level \[m\], see [`ElasticState::stiffness`].
     pub fn stiffness(&self, level: f64) -> f64 {
-        self.power_law(level, |state| state.stiffness, 1.0)
+        known(level, self.power_law(level, |state| state.stiffness, 1.0))
     }
 
     /// Conductance of the contact of two conductors of resistivities ρ₁ and ρ₂, electrical \[Ω m → S\] or thermal \[m
@@ -380,6 +380,11 @@ impl ElasticStates {
     pub fn conductance(&self, level: f64, resistivities: [f64; 2]) -> f64 {
         2.0 * self.stiffness(level) / resistivities.iter().sum::<f64>()
     }
+}
+
+/// A value at a place: NaN where the place is none.
+fn known(place: f64, value: f64) -> f64 {
+    if place.is_nan() { place } else { value }
 }
 
 debug_by!(self: ElasticStates => states: self.states.len(), last_level: self.last_level(), error: self.error);

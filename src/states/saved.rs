@@ -1,6 +1,7 @@
 //! The state of a contact on elastic states in a file.
 
 use std::borrow::Cow;
+use std::io::{Cursor, Read, Seek};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -52,6 +53,17 @@ impl StatesContact {
         replace(path, |out| Output::begin(out, &self.parts(), &saved)?.finish())
     }
 
+    /// What [`StatesContact::save`] writes, in memory: for pickles, and for messages between processes.
+    ///
+    /// Needs the feature `checkpoint`.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let times = [self.time, self.reduced_time, self.undisturbed_until];
+        let saved = Saved { times, prescribed: self.prescribed, levels: Cow::Borrowed(&self.levels), run: None };
+        let mut out = Cursor::new(Vec::new());
+        let written = Output::begin(&mut out, &self.parts(), &saved).and_then(Output::finish);
+        written.map(|()| out.into_inner()).unwrap_or_default()
+    }
+
     /// Puts a saved state in the place of this one. The contact must be made of the same states and material, with
     /// the same time rule and temperature. A run that saved it ([`Run::autosave_to`](crate::run::Run::autosave_to))
     /// goes on with the next
@@ -64,15 +76,29 @@ impl StatesContact {
     /// contact is then as it was.
     pub fn resume(&mut self, path: impl AsRef<Path>) -> Result<()> {
         let path = path.as_ref();
-        let saved = self.read(path).map_err(|cause| Error::Checkpoint { path: path.to_owned(), cause })?;
+        self.resume_from(path, Input::open(path))
+    }
+
+    /// [`StatesContact::resume`] from the bytes of [`StatesContact::to_bytes`], or of a file.
+    ///
+    /// Needs the feature `checkpoint`.
+    ///
+    /// # Errors
+    /// As [`StatesContact::resume`].
+    pub fn resume_bytes(&mut self, bytes: &[u8]) -> Result<()> {
+        self.resume_from(Path::new("bytes in memory"), Input::begin(Cursor::new(bytes)))
+    }
+
+    fn resume_from(&mut self, path: &Path, file: Result<Input<impl Read + Seek>, CheckpointError>) -> Result<()> {
+        let saved = file.and_then(|file| self.read(file));
+        let saved = saved.map_err(|cause| Error::Checkpoint { path: path.to_owned(), cause })?;
         [self.time, self.reduced_time, self.undisturbed_until] = saved.times;
         (self.prescribed, self.levels) = (saved.prescribed, saved.levels.into_owned());
         self.saved_run = saved.run.map(|run| Arc::new(run) as _);
         Ok(())
     }
 
-    fn read(&self, path: &Path) -> Result<Saved<'static>, CheckpointError> {
-        let mut file = Input::open(path)?;
+    fn read(&self, mut file: Input<impl Read + Seek>) -> Result<Saved<'static>, CheckpointError> {
         if !file.is_intact() {
             return Err(CheckpointError::Damaged);
         }

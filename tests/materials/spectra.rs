@@ -7,6 +7,7 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use viscocontact::prelude::*;
 use viscocontact::rheology::{CreepSpectrum, RelaxationSpectrum};
+use viscocontact::states::ElasticStates;
 
 /// s Ĵ(s) · s Ĝ(s) − 1 at a real s, from the definitions of both series.
 fn carson_defect(creep: &CreepSpectrum, relaxation: &RelaxationSpectrum, s: f64) -> f64 {
@@ -127,4 +128,67 @@ fn a_negligible_term_does_not_change_the_relaxation() {
     // as between the ends of the range
     let creep = CreepSpectrum::new(1.0, 0.0, &[(1e-100, 1.0), (1e100, 1e100)]).unwrap();
     assert!((creep.relaxation().modulus(0.0) - 1.0).abs() < 1e-12, "{:?}", creep.relaxation());
+}
+
+/// Both series have a conjugate modulus at a negative frequency, and that of a slow motion at none; elastic states and closed forms have no value
+/// at no place.
+#[test]
+fn evaluation_keeps_nan_and_signs() {
+    let [creep, fluid] =
+        [0.0, 2.0].map(|fluidity| CreepSpectrum::new(1.0, fluidity, &[(3.0, 0.5), (1.0, 7.0)]).unwrap());
+    for of in [&creep, &fluid] {
+        for omega in [1e-9, 0.1, 1.0, 30.0, 1e9] {
+            let (ahead, back) = (of.complex_modulus(omega), of.complex_modulus(-omega));
+            assert!((ahead.conj() - back).norm() < 1e-14 * ahead.norm() && ahead.im > 0.0);
+            let [ahead, back] = [omega, -omega].map(|omega| of.relaxation().complex_modulus(omega));
+            assert!((ahead.conj() - back).norm() < 1e-14 * ahead.norm());
+        }
+        assert!(of.complex_modulus(f64::NAN).is_nan());
+    }
+    assert_eq!(fluid.complex_modulus(0.0).norm(), 0.0);
+    assert!((creep.complex_modulus(0.0).re - 0.2).abs() < 1e-15);
+    let states = ElasticStates::sphere(1e-2).unwrap();
+    for of in [ElasticStates::approach, ElasticStates::level_at, ElasticStates::area, ElasticStates::stiffness] {
+        assert!(of(&states, f64::NAN).is_nan() && of(&states, 1e-6) > 0.0 && of(&states, 0.0) == 0.0);
+    }
+    let dmt = viscocontact::analytic::Dmt::new(1e-3, 1e5, 0.1).unwrap();
+    assert!(dmt.state(-1e-5).iter().chain(&dmt.state(f64::NAN)).all(|number| number.is_nan()));
+}
+
+/// States in memory are those of the files, and are refused as they are.
+#[test]
+fn states_in_memory_are_those_of_files() {
+    let body = Material::incompressible(Maxwell::with_time(1e6, 1.0).unwrap());
+    let build = || {
+        let builder =
+            ViscoelasticContact::builder(Grid::square(16, 4e-3).unwrap()).geometry(&Sphere::new(1e-2).unwrap());
+        builder.material(body.clone()).build().unwrap()
+    };
+    let (mut contact, mut again) = (build(), build());
+    contact.step(0.5, Load::force(0.1)).unwrap();
+    let bytes = contact.to_bytes().unwrap();
+    let path = std::env::temp_dir().join(format!("viscocontact-bytes-{}", std::process::id()));
+    contact.save(&path).unwrap();
+    assert_eq!(std::fs::read(&path).unwrap(), bytes);
+    std::fs::remove_file(path).unwrap();
+    again.resume_bytes(&bytes).unwrap();
+    let next = |contact: &mut ViscoelasticContact| contact.step(0.5, Load::force(0.05)).unwrap().approach;
+    assert_eq!(next(&mut contact), next(&mut again));
+    assert!((0..bytes.len()).step_by(97).all(|end| build().resume_bytes(&bytes[..end]).is_err()));
+    let states = ElasticStates::sphere(1e-2).unwrap();
+    let small = || viscocontact::states::StatesContact::new(&states, &body).unwrap();
+    let (mut contact, mut again) = (small(), small());
+    contact.step(0.5, Load::force(0.1)).unwrap();
+    again.resume_bytes(&contact.to_bytes()).unwrap();
+    assert_eq!(
+        contact.step(0.5, Load::force(0.2)).unwrap().approach,
+        again.step(0.5, Load::force(0.2)).unwrap().approach
+    );
+    assert!(again.resume_bytes(b"other").is_err());
+    #[cfg(feature = "npy")]
+    {
+        use viscocontact::output::{states_from_bytes, states_to_bytes};
+        assert_eq!(states_from_bytes(&states_to_bytes(&states)).unwrap().states(), states.states());
+        assert!(states_from_bytes(b"other").is_err());
+    }
 }

@@ -57,6 +57,7 @@ impl Fit {
                 let rise = rise(distance);
                 [rise - threshold, 2.0 * rise / distance]
             });
+            self.goes_on()?;
             *limit = scale.back(if found < WIDEST { centre + side * found * deviation } else { side * f64::INFINITY });
         }
         Ok(limits)

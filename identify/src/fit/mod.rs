@@ -5,8 +5,10 @@ mod intervals;
 mod report;
 mod reweigh;
 mod search;
+mod state;
 mod variants;
 
+use std::ops::ControlFlow;
 use std::sync::atomic::Ordering;
 
 use faer::{Col, Mat};
@@ -25,6 +27,7 @@ use crate::statistics::{correlation_test, student};
 use deviations::{inverse, limit, robust_deviation, sandwich};
 pub use report::{FitWarning, ranked};
 use search::Found;
+pub use state::FitState;
 pub use variants::Variant;
 
 /// A parameter that moves by less than this fraction with a coordinate hardly depends on it.
@@ -62,6 +65,7 @@ pub struct Fit {
     pub(crate) problem: Problem,
     /// Values of all parameters.
     pub(crate) values: Vec<f64>,
+    coordinates: Vec<f64>,
     prony: Prony,
     estimates: Vec<Estimate>,
     /// Covariance of the estimates, and of the coordinates.
@@ -154,6 +158,7 @@ impl Fit {
             curves,
             problem,
             values,
+            coordinates: minimum.coordinates,
             prony,
             estimates,
             spread,
@@ -168,6 +173,17 @@ impl Fit {
             iterations,
             contained,
         })
+    }
+
+    /// The same with a watch over what it computes from now on ([`Identification::watched`]).
+    pub fn watched(mut self, goes_on: impl Fn() -> ControlFlow<()> + Send + Sync + 'static) -> Fit {
+        self.identification = self.identification.watched(goes_on);
+        self
+    }
+
+    /// Ends a call whose watch breaks.
+    pub(crate) fn goes_on(&self) -> Result<()> {
+        self.identification.goes_on()
     }
 
     /// The model that was fitted.
@@ -213,6 +229,9 @@ impl Fit {
         let coordinates = self.problem.coordinates(&self.values);
         let moved = |column, width| self.modulus_of(&self.problem.moved(&coordinates, column, width), t).ln();
         // derivatives of ln E by the coordinates, which may all be moved either way
+        if !(t >= 0.0) {
+            return [f64::NAN; 2];
+        }
         let slopes = Col::from_fn(coordinates.len(), |column| {
             let slope = (moved(column, WIDTH) - moved(column, -WIDTH)) / (2.0 * WIDTH);
             if slope.is_finite() { slope } else { 0.0 }

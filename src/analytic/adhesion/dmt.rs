@@ -25,9 +25,10 @@ impl Dmt {
         Bodies::new("radius", radius, modulus, work).map(Dmt)
     }
 
-    /// Force W \[N\] and approach ω \[m\] at the contact radius a \[m\].
+    /// Force W \[N\] and approach ω \[m\] at the contact radius a ≥ 0 \[m\]; NaN below.
     pub fn state(&self, contact_radius: f64) -> [f64; 2] {
-        let (Bodies { length, modulus, .. }, a) = (self.0, contact_radius);
+        let (Bodies { length, modulus, .. }, a) =
+            (self.0, if contact_radius < 0.0 { f64::NAN } else { contact_radius });
         [4.0 * modulus * a.powi(3) / (3.0 * length) + self.pull_off_force(), a * a / length]
     }
 

@@ -42,14 +42,10 @@ impl<W: Write> Write for Hashed<W> {
 }
 
 /// A file that is being written.
-pub(crate) struct Output<'a>(BufWriter<Hashed<&'a mut BufWriter<File>>>);
+pub(crate) struct Output<'a, W: Write>(BufWriter<Hashed<&'a mut W>>);
 
-impl<'a> Output<'a> {
-    pub(crate) fn begin(
-        out: &'a mut BufWriter<File>,
-        scene: &Parts,
-        contents: &impl Serialize,
-    ) -> io::Result<Output<'a>> {
+impl<'a, W: Write + Seek> Output<'a, W> {
+    pub(crate) fn begin(out: &'a mut W, scene: &Parts, contents: &impl Serialize) -> io::Result<Output<'a, W>> {
         out.write_all(&[&MAGIC[..], &VERSION.to_le_bytes(), &[0; (CONTENTS - CHECKSUM) as usize]].concat())?;
         let mut out = BufWriter::with_capacity(PIECE, Hashed { out, hasher: Hasher::new() });
         let scene: Vec<_> = scene.iter().map(|(_, numbers)| numbers).collect();
@@ -70,17 +66,23 @@ impl<'a> Output<'a> {
 }
 
 /// A file that is being read.
-pub(crate) struct Input {
-    file: BufReader<File>,
+pub(crate) struct Input<R> {
+    file: R,
     pub(super) stated_checksum: u32,
     /// Where the field that is read next begins.
     field: u64,
 }
 
-impl Input {
+impl Input<BufReader<File>> {
     /// Opens a file of this format.
-    pub(crate) fn open(path: &Path) -> Result<Input, CheckpointError> {
-        let mut file = File::open(path).map_err(unreadable)?;
+    pub(crate) fn open(path: &Path) -> Result<Self, CheckpointError> {
+        Input::begin(BufReader::with_capacity(PIECE, File::open(path).map_err(unreadable)?))
+    }
+}
+
+impl<R: Read + Seek> Input<R> {
+    /// Reads what begins a file of this format.
+    pub(crate) fn begin(mut file: R) -> Result<Input<R>, CheckpointError> {
         let mut header = Vec::new();
         (&mut file).take(CONTENTS).read_to_end(&mut header).map_err(unreadable)?;
         if !header.starts_with(MAGIC) {
@@ -93,7 +95,7 @@ impl Input {
         if found != VERSION {
             return Err(CheckpointError::Format { found, known: VERSION });
         }
-        Ok(Input { file: BufReader::with_capacity(PIECE, file), stated_checksum, field: 0 })
+        Ok(Input { file, stated_checksum, field: 0 })
     }
 
     /// Whether the file holds what was written.

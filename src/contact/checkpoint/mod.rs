@@ -5,6 +5,7 @@ pub(crate) mod format;
 pub(crate) mod scene;
 
 use std::borrow::Cow;
+use std::io::{self, Cursor, Read, Seek, Write};
 use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
@@ -43,46 +44,69 @@ struct Saved<'a, P: SavedRun> {
 impl ViscoelasticContact {
     /// [`ViscoelasticContact::save`] with how far a run along a history has come.
     pub(crate) fn save_with<P: SavedRun>(&self, path: &Path, run: Option<&P>) -> Result<()> {
+        self.computation.state.held.region.rows().replace_file(path, |out| self.write(out, run))
+    }
+
+    /// What [`ViscoelasticContact::save_with`] writes, in memory.
+    pub(crate) fn bytes_with<P: SavedRun>(&self, run: Option<&P>) -> io::Result<Vec<u8>> {
+        let mut out = Cursor::new(Vec::new());
+        self.write(Some(&mut out), run)?;
+        Ok(out.into_inner())
+    }
+
+    /// Writes on the first rank the state of all.
+    fn write<P: SavedRun>(&self, out: Option<&mut (impl Write + Seek)>, run: Option<&P>) -> io::Result<()> {
         let state = &self.computation.state;
         let Held { region, indenter, .. } = &state.held;
         let rows = region.rows();
-        rows.replace_file(path, |out| {
-            let all = if region.is_shared() { Region::whole(&region.whole, region.folded()) } else { region.clone() };
-            let saved = Saved {
-                state: state.map(&all, &mut |_| Vec::new()),
-                gap: (!Arc::ptr_eq(indenter, &self.built)).then(|| Cow::Borrowed(indenter.gap())),
-                run: run.map(Cow::Borrowed),
-            };
-            let scene = self.parts();
-            let mut out = out.map(|out| Output::begin(out, &scene, &saved)).transpose();
-            state.each(&mut |field| {
-                let kept = if let Role::Work = field.role { 0 } else { field.per_cell };
-                for which in 0..kept {
-                    let own = |cells: Range<usize>| {
-                        let own = runs([field.per_cell, which], region.len(), cells);
-                        own.flat_map(|run| &field.values[run]).copied().collect()
-                    };
-                    rows.in_pieces(own, |values| {
-                        // after an error, too: the other ranks send their rows
-                        if let Ok(Some(file)) = &mut out
-                            && let Err(error) = file.values(&values)
-                        {
-                            out = Err(error);
-                        }
-                    });
-                }
-            });
-            out?.map_or(Ok(()), Output::finish)
-        })
+        let all = if region.is_shared() { Region::whole(&region.whole, region.folded()) } else { region.clone() };
+        let saved = Saved {
+            state: state.map(&all, &mut |_| Vec::new()),
+            gap: (!Arc::ptr_eq(indenter, &self.built)).then(|| Cow::Borrowed(indenter.gap())),
+            run: run.map(Cow::Borrowed),
+        };
+        let scene = self.parts();
+        let mut out = out.map(|out| Output::begin(out, &scene, &saved)).transpose();
+        state.each(&mut |field| {
+            let kept = if let Role::Work = field.role { 0 } else { field.per_cell };
+            for which in 0..kept {
+                let own = |cells: Range<usize>| {
+                    let own = runs([field.per_cell, which], region.len(), cells);
+                    own.flat_map(|run| &field.values[run]).copied().collect()
+                };
+                rows.in_pieces(own, |values| {
+                    // after an error, too: the other ranks send their rows
+                    if let Ok(Some(file)) = &mut out
+                        && let Err(error) = file.values(&values)
+                    {
+                        out = Err(error);
+                    }
+                });
+            }
+        });
+        out?.map_or(Ok(()), Output::finish)
     }
 
     /// Puts a saved state in the place of this one, and returns the run that saved it.
     pub(crate) fn resume_with<P: SavedRun>(&mut self, path: &Path) -> Result<Option<P>> {
+        self.resume_from(path, || Input::open(path))
+    }
+
+    /// The same from the bytes of such a file.
+    pub(crate) fn resume_bytes_with<P: SavedRun>(&mut self, bytes: &[u8]) -> Result<Option<P>> {
+        self.resume_from(Path::new("bytes in memory"), || Input::begin(Cursor::new(bytes)))
+    }
+
+    fn resume_from<P: SavedRun, R: Read + Seek>(
+        &mut self,
+        path: &Path,
+        open: impl FnOnce() -> Result<Input<R>, CheckpointError>,
+    ) -> Result<Option<P>> {
         let rows = self.computation.state.held.region.rows();
         rows.or_loss(|| {
             let failed = |cause| Error::Checkpoint { path: path.to_owned(), cause };
             let scene = self.parts();
-            let mut file = rows.agree(Input::open(path).map_err(failed))?;
+            let mut file = rows.agree(open().map_err(failed))?;
             // not one save on one rank and the next on another
             rows.same([f64::from(file.stated_checksum)])?;
             let is_damaged = rows.any(rows.rank() == 0 && !file.is_intact());
@@ -102,7 +126,11 @@ impl ViscoelasticContact {
     }
 
     /// The state in a file on the local rows, and how far a run had come.
-    fn read<P: SavedRun>(&self, file: &mut Input, scene: &Parts) -> Result<(State, Option<P>), CheckpointError> {
+    fn read<P: SavedRun>(
+        &self,
+        file: &mut Input<impl Read + Seek>,
+        scene: &Parts,
+    ) -> Result<(State, Option<P>), CheckpointError> {
         let Saved { mut state, gap, run }: Saved<'_, P> = file.contents(scene)?;
         self.check(&state, gap.as_deref())?;
         if run.as_deref().is_some_and(|run| !run.fits()) {

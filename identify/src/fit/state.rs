@@ -1,0 +1,85 @@
+//! The numbers of a fit, from which it is made again without a search.
+
+use viscocontact::numeric::LeastSquares;
+
+use super::Fit;
+use super::search::Found;
+use crate::error::{Result, same_length};
+use crate::experiment::Curve;
+use crate::identification::Identification;
+use crate::noise::Whitening;
+use crate::problem::Part;
+
+/// The numbers of a fit, without its curves: to save it, or to send it to another process.
+///
+/// ```
+/// use viscocontact::states::ElasticStates;
+/// use viscocontact_identify::{Curve, Experiment, Identification, Model, Protocol};
+///
+/// let experiment = Experiment::new(Protocol::trapezoid(1.0e-6, [0.2, 0.5, 0.2], 0.05)?, ElasticStates::sphere(5.0e-6)?);
+/// let maxwell = Identification::new(Model::Maxwell);
+/// let samples = maxwell.respond(&experiment, &[("E0", 2.0e3), ("tau", 0.5)])?;
+/// let curves = [Curve::new(experiment, samples.iter().map(|sample| sample.force).collect())?];
+/// let fit = maxwell.fit(&curves)?;
+/// let again = fit.state().fit(&maxwell, &curves)?;
+/// assert_eq!(again.estimates(), fit.estimates());
+/// # Ok::<(), viscocontact_identify::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct FitState {
+    /// The free parameters on their scales.
+    pub coordinates: Vec<f64>,
+    /// Of each curve: its weight, the autoregressive coefficient, and a weight of each sample.
+    pub noise: Vec<(f64, Option<f64>, Vec<f64>)>,
+    /// Iterations of the search.
+    pub iterations: usize,
+    /// The least sum of squares of a model that this one contains.
+    pub contained: Option<f64>,
+}
+
+impl FitState {
+    /// No fit yet.
+    pub fn new(
+        coordinates: Vec<f64>,
+        noise: Vec<(f64, Option<f64>, Vec<f64>)>,
+        iterations: usize,
+        contained: Option<f64>,
+    ) -> FitState {
+        FitState { coordinates, noise, iterations, contained }
+    }
+
+    /// The fit of these numbers to the curves that they are of.
+    ///
+    /// # Errors
+    /// If there are other numbers of curves, samples or parameters; as [`Identification::fit`].
+    pub fn fit(self, identification: &Identification, curves: &[Curve]) -> Result<Fit> {
+        let mut problem = identification.problem(curves.to_vec())?;
+        same_length("state of a fit", self.coordinates.len(), problem.free().count())?;
+        same_length("noise of the curves of a fit", self.noise.len(), curves.len())?;
+        for (part, (scale, correlation, outliers)) in problem.parts.iter_mut().zip(self.noise) {
+            same_length("weights of the samples of a fit", outliers.len(), part.len())?;
+            (part.scale, part.outliers) = (scale, outliers);
+            if let Some(phi) = correlation {
+                part.whitening = Whitening::Autoregressive(phi);
+            }
+        }
+        let residuals = problem.residuals(&self.coordinates)?;
+        let minimum = LeastSquares::at(self.coordinates, residuals, self.iterations);
+        let contained = problem.model.contained().zip(self.contained);
+        Fit::new(identification, problem, Found { minimum, contained })
+    }
+}
+
+impl Fit {
+    /// What tells this fit from others of the same curves, to make it again without a search ([`FitState::fit`]).
+    pub fn state(&self) -> FitState {
+        let noise = |part: &Part| (part.scale, part.whitening.correlation(), part.outliers.clone());
+        FitState {
+            coordinates: self.coordinates.clone(),
+            noise: self.problem.parts.iter().map(noise).collect(),
+            iterations: self.iterations,
+            contained: self.contained.map(|(_, sum)| sum),
+        }
+    }
+}
