@@ -1,22 +1,11 @@
 //! Closed forms to compare with.
 
-use std::sync::Arc;
-
-use pyo3::prelude::*;
-use pyo3::types::PyDict;
 use viscocontact::analytic as an;
 use viscocontact::load::LoadHistory as Load;
 
-use crate::arrays::{FROM_ZERO, check, mapped};
-use crate::errors::{Kept, OrRaise, nothing_raised};
-use crate::grid::Grid;
-use crate::interrupt::free;
-use crate::loads::LoadHistory;
-use crate::materials::Material;
-use crate::recipe::Recipe;
-use crate::shapes::Shape;
+use crate::arrays::check;
+use crate::prelude::*;
 use crate::sliding::complex;
-use crate::used::Function;
 
 /// Hertz: a sphere of `radius` [m] on a body of contact `modulus` E* [Pa] under `force` [N]: "contact_radius" [m], "max_pressure" [Pa]
 /// and "approach" [m].

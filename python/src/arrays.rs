@@ -1,44 +1,17 @@
 //! NumPy arrays of any type, order and stride to Rust, and fields back.
 
-use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use crate::prelude::*;
+use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::intern;
-use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList};
 use viscocontact::UserError;
-
-use crate::errors::nothing_raised;
-use crate::interrupt::free;
 
 /// Any array of Python.
 pub type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
 
 /// The values of anything that NumPy makes an array of real numbers of, row by row, and its shape.
 pub fn values(name: &str, object: &Bound<'_, PyAny>) -> PyResult<(Vec<f64>, Vec<usize>)> {
-    let py = object.py();
-    let numpy = py.import(intern!(py, "numpy"))?;
-    // NumPy takes an iterator, as of `zip`, for one value
-    let listed = object.hasattr(intern!(py, "__next__"))?.then(|| py.get_type::<PyList>().call1((object,)));
-    let listed = listed.transpose()?;
-    let object = listed.as_ref().unwrap_or(object);
-    // an array without its mask has values where none are
-    let is_masked = object.hasattr(intern!(py, "filled"))?
-        && numpy.getattr(intern!(py, "ma"))?.call_method1(intern!(py, "isMaskedArray"), (object,))?.is_truthy()?;
-    let array = numpy.call_method1(intern!(py, "asarray"), (object,))?;
-    let options = PyDict::new(py);
-    options.set_item("casting", "same_kind")?;
-    options.set_item("copy", false)?;
-    options.set_item("order", "C")?;
-    let array = array.call_method(intern!(py, "astype"), ("float64",), Some(&options)).map_err(|_| {
-        let kind = array.getattr("dtype").map_or_else(|_| "?".to_owned(), |kind| kind.to_string());
-        PyTypeError::new_err(format!("{name}: an array of real numbers is needed, not of {kind}"))
-    })?;
-    let array = if is_masked {
-        let mask = numpy.getattr(intern!(py, "ma"))?.call_method1(intern!(py, "getmaskarray"), (object,))?;
-        numpy.call_method1(intern!(py, "where"), (mask, f64::NAN, array))?
-    } else {
-        array
-    };
+    let array =
+        object.py().import(intern!(object.py(), "viscocontact._values"))?.call_method1("numbers", (name, object))?;
     let array = array.cast::<PyArrayDyn<f64>>()?;
     // another thread may be writing into it
     let readable = array.try_readonly().map_err(|error| PyValueError::new_err(format!("{name}: {error}")))?;

@@ -1,18 +1,11 @@
 //! The attraction between surfaces.
 
 use std::fmt;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 
-use pyo3::exceptions::PyTypeError;
-use pyo3::prelude::*;
+use crate::prelude::*;
 use viscocontact::UserError;
 use viscocontact::adhesion::{self as ad, Attraction as Law};
-
-use crate::arrays::{FROM_ZERO, mapped};
-use crate::errors::{OrRaise, no_violation, nothing_raised};
-use crate::interrupt::free;
-use crate::recipe::Recipe;
-use crate::used::Function;
 
 /// A law of the attraction between surfaces: traction [Pa] over gap [m].
 ///

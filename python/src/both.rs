@@ -1,20 +1,11 @@
 //! What contacts in space and on elastic states have in common: runs, copies, checkpoints, and pickles through them.
 
-use std::path::PathBuf;
-use std::sync::Arc;
+use pyo3::types::{PyList, PyType};
 
-use pyo3::gc::PyVisit;
-use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict, PyList, PyTuple, PyType};
-
-use crate::contact::ViscoelasticContact;
-use crate::errors::OrRaise;
 use crate::held::{Options, saved_every, stepping, times};
-use crate::interrupt::free;
 use crate::loads::histories;
+use crate::prelude::*;
 use crate::run::Run;
-use crate::states_contact::StatesContact;
-use crate::used::{Function, Shared, Taken, Traversed};
 
 /// How an object is made again, and the bytes of its state.
 type Pickled<'py> =

@@ -1,25 +1,12 @@
 //! The contact, and its steps.
 
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
-use pyo3::prelude::*;
-use pyo3::types::PyDict;
 use viscocontact::contact as ct;
 use viscocontact::{self as vc, motion};
 
-use crate::errors::OrRaise;
-use crate::grid::Grid;
 use crate::held::Held;
-use crate::interrupt::{free, interruptible};
-use crate::loads::{Load, loads};
-use crate::materials::Material;
-use crate::recipe::{Recipe, digits};
-use crate::reports::StepReport;
-use crate::scene::builder;
-use crate::shapes::{Shape, geometries};
-use crate::used::{Function, Shared, Taken};
+use crate::prelude::*;
 
 /// Steps on more cells, ...
 const MANY_CELLS: usize = 1 << 17;

@@ -1,24 +1,10 @@
 //! Measured indentation curves, and the experiments behind them.
 
-use std::path::PathBuf;
-use std::sync::Arc;
-
-use numpy::IntoPyArray;
-use pyo3::exceptions::{PyTypeError, PyValueError};
-use pyo3::gc::PyVisit;
-use pyo3::prelude::*;
-use pyo3::types::PyDict;
 use viscocontact::load::LoadHistory as _;
 use viscocontact_identify as id;
 
-use crate::arrays::{Array, column, to_array};
-use crate::errors::{OrRaise, choice, raised_number};
-use crate::interrupt::free;
-use crate::loads::{Load, LoadHistory};
 use crate::measured::text_table;
-use crate::recipe::{Recipe, Reduced, Value};
-use crate::states::ElasticStates;
-use crate::used::{Function, Traversed};
+use crate::prelude::*;
 
 /// A drive and the tip that it presses onto the sample, before the force is measured.
 ///
@@ -75,50 +61,6 @@ impl Experiment {
         Experiment::of(protocol, tip, stiffness)
     }
 
-    /// From 0 to `depth` [m], held there, and back, within the `durations` of rise, hold and fall [s], sampled at `interval` [s].
-    #[staticmethod]
-    #[pyo3(signature = (depth, durations, interval, tip, *, stiffness=None))]
-    fn trapezoid(
-        depth: f64,
-        durations: [f64; 3],
-        interval: f64,
-        tip: &Bound<'_, ElasticStates>,
-        stiffness: Option<f64>,
-    ) -> PyResult<Experiment> {
-        Experiment::of(id::Protocol::trapezoid(depth, durations, interval).or_raise()?, tip, stiffness)
-    }
-
-    /// A ramp at `speed` [m/s] from `distance` [m] above the surface to the drive `depth` [m], a hold [s], and the way back: the force curve of
-    /// an AFM, where the drive is the position of the base.
-    #[staticmethod]
-    #[pyo3(signature = (speed, distance, depth, hold, interval, tip, *, stiffness=None))]
-    fn ramp_hold_retract(
-        speed: f64,
-        distance: f64,
-        depth: f64,
-        hold: f64,
-        interval: f64,
-        tip: &Bound<'_, ElasticStates>,
-        stiffness: Option<f64>,
-    ) -> PyResult<Experiment> {
-        let protocol = id::Protocol::ramp_hold_retract(speed, [distance, depth], hold, interval);
-        Experiment::of(protocol.or_raise()?, tip, stiffness)
-    }
-
-    /// Each of the `depths` [m] is approached in the time `rise` [s] and held for `dwell` [s]; samples at `interval` [s].
-    #[staticmethod]
-    #[pyo3(signature = (depths, rise, dwell, interval, tip, *, stiffness=None))]
-    fn staircase(
-        depths: Vec<f64>,
-        rise: f64,
-        dwell: f64,
-        interval: f64,
-        tip: &Bound<'_, ElasticStates>,
-        stiffness: Option<f64>,
-    ) -> PyResult<Experiment> {
-        Experiment::of(id::Protocol::staircase(&depths, rise, dwell, interval).or_raise()?, tip, stiffness)
-    }
-
     /// The drive as the load history of a contact: approaches, or springs.
     fn load_history(&self, py: Python<'_>) -> PyResult<LoadHistory> {
         let history = self.of.load_history().or_raise()?;
@@ -142,6 +84,38 @@ impl Experiment {
     fn __traverse__(&self, visit: PyVisit<'_>) -> Traversed {
         visit.call(&self.tip)
     }
+}
+
+/// Experiments by their drive, with a tip, perhaps on a spring.
+macro_rules! protocols {
+    ($($(#[$doc:meta])* $name:ident($($arg:ident: $type:ty),*) = $made:expr;)*) => {
+        #[pymethods]
+        impl Experiment {
+            $(
+                $(#[$doc])*
+                #[staticmethod]
+                #[pyo3(signature = ($($arg,)* tip, *, stiffness=None))]
+                #[allow(clippy::too_many_arguments)]
+                fn $name($($arg: $type,)* tip: &Bound<'_, ElasticStates>, stiffness: Option<f64>) -> PyResult<Experiment> {
+                    Experiment::of($made.or_raise()?, tip, stiffness)
+                }
+            )*
+        }
+    };
+}
+
+protocols! {
+    /// From 0 to `depth` [m], held there, and back, within the `durations` of rise, hold and fall [s], sampled at `interval` [s].
+    trapezoid(depth: f64, durations: [f64; 3], interval: f64) = id::Protocol::trapezoid(depth, durations, interval);
+
+    /// A ramp at `speed` [m/s] from `distance` [m] above the surface to the drive `depth` [m], a hold [s], and the way back: the force curve of
+    /// an AFM, where the drive is the position of the base.
+    ramp_hold_retract(speed: f64, distance: f64, depth: f64, hold: f64, interval: f64) =
+        id::Protocol::ramp_hold_retract(speed, [distance, depth], hold, interval);
+
+    /// Each of the `depths` [m] is approached in the time `rise` [s] and held for `dwell` [s]; samples at `interval` [s].
+    staircase(depths: Vec<f64>, rise: f64, dwell: f64, interval: f64) =
+        id::Protocol::staircase(&depths, rise, dwell, interval);
 }
 
 /// A measured curve: an experiment and the force [N] at each of its times, positive where it presses.

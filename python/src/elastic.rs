@@ -1,25 +1,10 @@
 //! Elastic contacts.
 
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
-
-use pyo3::exceptions::PyTypeError;
-use pyo3::prelude::*;
-use pyo3::types::PyDict;
 use viscocontact::contact::Settings;
 use viscocontact::elastic as ve;
 
 use crate::arrays::field;
-use crate::errors::OrRaise;
-use crate::fields::{Fields, Shown};
-use crate::grid::Grid;
-use crate::interrupt::{free, interruptible};
-use crate::kernels::InfluenceKernel;
-use crate::loads::loads;
-use crate::recipe::digits;
-use crate::scene::settings;
-use crate::shapes::geometries;
-use crate::used::{Shared, Taken};
+use crate::prelude::*;
 
 /// A rigid body, or several, pressed onto an elastic body: without time.
 ///

@@ -3,11 +3,11 @@
 use std::cell::RefCell;
 use std::error::Error as StdError;
 use std::io;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 
+use crate::prelude::*;
 use pyo3::create_exception;
-use pyo3::exceptions::{PyException, PyMemoryError, PyNotImplementedError, PyOSError, PyRuntimeError, PyValueError};
-use pyo3::prelude::*;
+use pyo3::exceptions::{PyException, PyMemoryError, PyNotImplementedError, PyOSError};
 use viscocontact::states::StatesError;
 use viscocontact::{Error, ErrorKind, FileError, UserError};
 use viscocontact_identify::Error as IdentifyError;

@@ -1,21 +1,11 @@
 //! Fields and numbers of the state of a contact of any kind.
 
-use pyo3::prelude::*;
-use pyo3::types::PyDict;
 use viscocontact as vc;
 use viscocontact::fields as vf;
 
-use crate::arrays::{Array, to_array};
-use crate::contact::ViscoelasticContact;
-use crate::elastic::ElasticContact;
-use crate::errors::OrRaise;
-use crate::grid::Grid;
-use crate::interrupt::free;
-use crate::loads::Load;
-use crate::recipe::digits;
+use crate::prelude::*;
 use crate::reports::BodyState;
 use crate::sliding::SteadySliding;
-use crate::used::Shared;
 
 /// What has fields to show.
 pub trait Shown {

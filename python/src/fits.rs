@@ -1,27 +1,12 @@
 //! Fits: identified parameters, and what the curves determine.
 
-use std::path::PathBuf;
-
-use numpy::IntoPyArray;
-use pyo3::exceptions::{PyIndexError, PyKeyError, PyTypeError};
-use pyo3::gc::PyVisit;
-use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::exceptions::{PyIndexError, PyKeyError};
 use viscocontact_identify as id;
 
-use crate::arrays::{Array, FROM_ZERO, mapped, never, to_array};
 use crate::curves::Curve;
-use crate::errors::{OrRaise, in_python};
-use crate::grid::Grid;
 use crate::identify::{Identification, several, watched};
-use crate::interrupt::free;
-use crate::materials::Material;
 use crate::pictures::Picture;
-use crate::recipe::Recipe;
-use crate::rheology::Rheology;
-use crate::scene::builder;
-use crate::states::ElasticStates;
-use crate::used::Traversed;
+use crate::prelude::*;
 
 /// One identified parameter.
 ///
@@ -42,6 +27,7 @@ impl Estimate {
         format!("Estimate({})", self.of)
     }
 
+    #[allow(clippy::type_complexity)]
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (Py<Fit>, &str))> {
         Ok((py.get_type::<Fit>().getattr("__getitem__")?, (self.fit.clone_ref(py), &self.of.name)))
     }

@@ -1,30 +1,16 @@
 //! Friction in space: partial slip, shear and torsion.
 
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-use numpy::{IntoPyArray, PyArray2, PyArrayMethods};
+use numpy::{PyArray2, PyArrayMethods};
 use pyo3::create_exception;
-use pyo3::exceptions::{PyTypeError, PyValueError};
-use pyo3::gc::PyVisit;
-use pyo3::prelude::*;
-use pyo3::types::PyDict;
 use viscocontact::friction as vf;
 use viscocontact::{self as vc};
 
-use crate::arrays::{Array, to_array};
 use crate::contact::timed;
-use crate::errors::{OrRaise, no_exception, raised_number};
-use crate::fields::Fields;
-use crate::grid::Grid;
-use crate::interrupt::{free, interruptible};
-use crate::loads::{Load, Tilts};
-use crate::materials::Material;
-use crate::recipe::Recipe;
-use crate::reports::StepReport;
-use crate::scene::{builder, unexpected};
-use crate::used::{Function, Shared, Taken, Traversed};
+use crate::errors::no_exception;
+use crate::loads::Tilts;
+use crate::prelude::*;
 
 create_exception!(
     viscocontact,
@@ -223,7 +209,7 @@ impl FrictionContact {
             Err(_) => Limit(Arc::new(vf::Coulomb::new(friction.extract().map_err(needed)?).or_raise()?)),
         };
         if options.is_some_and(|options| options.contains("time_rule").unwrap_or(false)) {
-            return Err(unexpected("FrictionContact", "time_rule", &[]));
+            return Err(unexpected("FrictionContact", "time_rule", ""));
         }
         let builder = builder(grid.get(), &geometry, material.get(), options)?;
         let contact = free(py, || vf::FrictionContact::new(builder, limit)).or_raise()?;

@@ -1,12 +1,9 @@
 //! The grid of a contact.
 
+use crate::prelude::*;
 use pyo3::conversion::FromPyObjectOwned;
-use pyo3::exceptions::{PyOverflowError, PyTypeError, PyValueError};
-use pyo3::prelude::*;
+use pyo3::exceptions::PyOverflowError;
 use pyo3::types::PyBool;
-
-use crate::arrays::{Array, to_array};
-use crate::errors::OrRaise;
 
 /// A number of things: ValueError below 0, as of any number that is not allowed.
 #[derive(Clone, Copy, IntoPyObject)]

@@ -1,24 +1,14 @@
 //! A contact, or the run that owns it; what a run is asked for.
 
-use std::path::PathBuf;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::AtomicU64;
 use std::time::Duration;
 
-use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
-use pyo3::gc::PyVisit;
-use pyo3::prelude::*;
+use crate::prelude::*;
 use viscocontact as vc;
 use viscocontact::load::LoadHistory;
 use viscocontact::rheology::{Elastic, Material};
 use viscocontact::run::{self as vr, Contact, Crossing, Stepping};
 use viscocontact::states::{ElasticStates, StatesContact as InStates};
-
-use crate::arrays::column;
-use crate::errors::OrRaise;
-use crate::grid::Count;
-use crate::recipe::{Recipe, Value};
-use crate::used::{Function, Traversed};
 
 /// Times at which steps end or states are sampled, counted from the start of a run.
 ///

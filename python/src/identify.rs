@@ -1,23 +1,13 @@
 //! Moduli from measured indentation curves, with their uncertainty.
 
 use std::ops::ControlFlow;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::AtomicUsize;
 
-use pyo3::exceptions::{PyRuntimeError, PyTypeError};
-use pyo3::prelude::*;
-use pyo3::types::PyDict;
 use viscocontact_identify as id;
 
-use crate::arrays::{Array, to_array};
 use crate::curves::{Curve, Experiment, model};
-use crate::errors::{Kept, OrRaise};
 use crate::fits::Fit;
-use crate::interrupt::{free, interruptible};
-use crate::recipe::{Recipe, Value};
-use crate::scene::unexpected;
-use crate::states::ElasticStates;
-use crate::used::{Function, goes_on};
+use crate::prelude::*;
 
 /// What is known of a property of each curve: one for all, or a list with one for each.
 fn per_curve(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Option<id::PerCurve>> {
@@ -49,8 +39,7 @@ fn nuisance(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Option<id::Nuisanc
     }
 }
 
-const OPTIONS: [&str; 11] =
-    ["contact_point", "offset", "drift", "tilt", "drag", "stiffness", "noise", "known_sigma", "robust", "fix", "start"];
+const OPTIONS: &str = "contact_point offset drift tilt drag stiffness noise known_sigma robust fix start";
 
 /// The identification with an option of this name.
 fn option(of: id::Identification, name: &str, given: &Bound<'_, PyAny>) -> PyResult<id::Identification> {
@@ -85,7 +74,7 @@ fn option(of: id::Identification, name: &str, given: &Bound<'_, PyAny>) -> PyRes
         "robust" => Ok(if given.extract()? { of.robust() } else { of }),
         "fix" => each(of, id::Identification::fix),
         "start" => each(of, id::Identification::start),
-        _ => Err(unexpected("Identification", name, &OPTIONS)),
+        _ => Err(unexpected("Identification", name, OPTIONS)),
     }
 }
 

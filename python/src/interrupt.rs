@@ -1,19 +1,17 @@
 //! Ctrl-C while Rust computes, and computing in a process that was forked.
 
 use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::time::Duration;
 
 use pyo3::exceptions::PyKeyboardInterrupt;
-use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use viscocontact::Result;
 
-use crate::errors::{OrRaise, no_exception, raised_number};
-use crate::used::{Function, goes_on};
+use crate::errors::no_exception;
+use crate::prelude::*;
 
 /// Time between two looks for a signal.
 const LISTEN: Duration = Duration::from_millis(50);

@@ -1,19 +1,10 @@
 //! Influence kernels: the bodies.
 
-use std::sync::Arc;
-
 use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
-use pyo3::exceptions::{PyTypeError, PyValueError};
-use pyo3::prelude::*;
 use viscocontact::{self as vc, Axis};
 
-use crate::arrays::{Array, field, to_array};
-use crate::errors::{Kept, OrRaise};
-use crate::grid::Grid;
-use crate::interrupt::free;
-use crate::materials::Material;
-use crate::recipe::Recipe;
-use crate::used::Function;
+use crate::arrays::field;
+use crate::prelude::*;
 
 /// The axis of an index, 0 or 1.
 pub fn axis(index: usize) -> PyResult<Axis> {

@@ -25,6 +25,7 @@ mod materials;
 mod measured;
 mod observe;
 mod pictures;
+mod prelude;
 mod recipe;
 mod reports;
 mod rheology;

@@ -1,17 +1,7 @@
 //! Loads and their histories.
 
-use std::sync::Arc;
-
-use pyo3::exceptions::{PyTypeError, PyValueError};
-use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
+use crate::prelude::*;
 use viscocontact::load::{self as ld, LoadHistory as History};
-
-use crate::arrays::column;
-use crate::errors::{OrRaise, no_violation, nothing_raised};
-use crate::interrupt::free;
-use crate::recipe::{Recipe, Value};
-use crate::used::Function;
 
 /// The load on a rigid body at the end of a step: a force, an approach, or a spring that drives it.
 ///

@@ -1,20 +1,14 @@
 //! Measured and generated surfaces.
 
 use std::fs::File;
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::path::Path;
 
-use pyo3::exceptions::{PyTypeError, PyUserWarning, PyValueError};
-use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
 use viscocontact::geometry::{self as geo, Anisotropy, Form, LengthUnit, RoughSpec, Roughness};
 use viscocontact::{FileError, TextFormat};
 
-use crate::arrays::{ALL, Array, mapped, never, plane, table, to_array};
-use crate::errors::{OrRaise, choice, raise};
-use crate::grid::{Count, Grid, PerAxis, count};
-use crate::interrupt::free;
-use crate::shapes::Shape;
+use crate::arrays::{plane, table};
+use crate::errors::raise;
+use crate::prelude::*;
 
 /// Heights of a surface on a regular grid of points, measured or computed; a `Shape`.
 ///
@@ -90,10 +84,7 @@ impl HeightMap {
     ) -> PyResult<PyClassInitializer<HeightMap>> {
         let (heights, cells) = plane("heights", heights)?;
         let map = geo::HeightMap::new(cells, lengths.0, heights).or_raise()?;
-        if let Err(doubt) = squared(&map, lengths.0) {
-            let text = std::ffi::CString::new(doubt.value(py).to_string())?;
-            PyErr::warn(py, &py.get_type::<PyUserWarning>(), &text, 1)?;
-        }
+        squared(py, &map, lengths.0, true)?;
         HeightMap::parts(py, if periodic { map.periodic() } else { map })
     }
 
@@ -151,7 +142,7 @@ impl HeightMap {
                     let lengths = lengths.ok_or_else(|| needs("the lengths of its sides in m, as lengths=(l1, l2)"))?;
                     let is_picture = choice("orientation", orientation, &[("array", false), ("picture", true)])?;
                     let map = free(py, || matrix(file, &ending, lengths, (unit, format), is_picture)).or_raise()?;
-                    squared(&map, lengths)?;
+                    squared(py, &map, lengths, false)?;
                     Ok(map)
                 }
             }
@@ -370,21 +361,10 @@ fn matrix(
     }
 }
 
-/// Refuses sides that make squares of the cells if they are exchanged, and only then.
-fn squared(map: &geo::HeightMap, [l1, l2]: [f64; 2]) -> PyResult<()> {
-    let [n1, n2] = map.cells().map(|n| n as f64);
-    let is_square = |a: f64, b: f64| (a / n1 / (b / n2) - 1.0).abs() < SQUARE;
-    if is_square(l1, l2) || !is_square(l2, l1) {
-        return Ok(());
-    }
-    Err(PyValueError::new_err(format!(
-        "lengths = ({l1}, {l2}) are those of the other axes: the map has {n1} points along x1 and {n2} along x2; give lengths=({l2}, {l1}), or \
-         the other orientation, \"array\" or \"picture\""
-    )))
+/// Refuses, or where `only_warns` warns of, sides that make squares of the cells if they are exchanged, and only then.
+fn squared(py: Python<'_>, map: &geo::HeightMap, lengths: [f64; 2], only_warns: bool) -> PyResult<()> {
+    py.import("viscocontact._values")?.call_method1("squared", (map.cells(), lengths, only_warns)).map(drop)
 }
-
-/// Sides of a cell that differ by less, relative, are equal.
-const SQUARE: f64 = 1e-3;
 
 fn opened(path: &Path) -> PyResult<File> {
     File::open(path).map_err(|error| {

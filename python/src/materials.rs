@@ -1,17 +1,9 @@
 //! Materials: a rheology and the response in volume.
 
-use std::sync::Arc;
-
-use pyo3::exceptions::PyTypeError;
-use pyo3::prelude::*;
-use pyo3::types::PyDict;
 use viscocontact::rheology as rh;
 
-use crate::arrays::{FROM_ZERO, mapped};
-use crate::errors::OrRaise;
-use crate::interrupt::free;
-use crate::recipe::Recipe;
-use crate::rheology::{Rheology, Series, series};
+use crate::prelude::*;
+use crate::rheology::{Series, series};
 
 /// A rheology that was measured in tension: what it gives as J(t) is the strain of a rod under unit tension, and its moduli are Young's.
 ///

@@ -1,23 +1,14 @@
 //! Measured creep, relaxation and dynamic moduli; temperature.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use pyo3::exceptions::{PyOSError, PyTypeError, PyValueError};
-use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict};
+use pyo3::exceptions::PyOSError;
 use viscocontact::input::{Delimiter, TextFormat, TextTable};
 use viscocontact::rheology::{self as rh, Experiment, Units};
 
-use crate::arrays::column;
-use crate::errors::{OrRaise, choice};
-use crate::grid::Count;
-use crate::interrupt::free;
 use crate::materials::Tension;
-use crate::recipe::{Recipe, Value};
-use crate::rheology::Rheology;
-use crate::scene::unexpected;
-use crate::temperature::TimeTemperature;
+use crate::prelude::*;
 
 /// Temperatures that differ by less, relative, are the same.
 const SAME_TEMPERATURE: f64 = 1e-9;
@@ -190,10 +181,7 @@ pub fn text_table(path: &Path, text: Option<&[u8]>, reading: Option<&Bound<'_, P
             "skipped_lines" => format = format.with_skipped_lines(value.extract::<Count>()?.0 as u64),
             "headings" => headings = value.extract()?,
             "only" => only = Some(value.extract::<Vec<String>>()?),
-            name => {
-                let known = ["decimal_comma", "delimiter", "skipped_lines", "headings", "only"];
-                return Err(unexpected("from_csv", name, &known));
-            }
+            name => return Err(unexpected("from_csv", name, "decimal_comma delimiter skipped_lines headings only")),
         }
     }
     let mut table = match text {

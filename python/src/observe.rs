@@ -1,21 +1,11 @@
 //! What a state shows: patches, profiles, distributions, stress.
 
-use numpy::{IntoPyArray, PyArrayMethods};
-use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use numpy::PyArrayMethods;
 use viscocontact::observe as ob;
 
-use crate::arrays::{Array, columns, field, to_array};
-use crate::contact::ViscoelasticContact;
-use crate::elastic::ElasticContact;
-use crate::errors::OrRaise;
-use crate::fields::{Fields, Shown};
-use crate::grid::{Count, Grid};
-use crate::interrupt::free;
-use crate::kernels::axis;
-use crate::shapes::Shape;
+use crate::arrays::{columns, field};
+use crate::prelude::*;
 use crate::stress::SubsurfaceStress;
-use crate::used::Shared;
 
 /// What a class that has fields shows.
 macro_rules! observed {

@@ -1,23 +1,12 @@
 //! Pictures that the crate draws: maps, profiles, sections, histories and animations.
 
-use std::path::PathBuf;
-
-use numpy::{IntoPyArray, PyArrayMethods};
-use pyo3::exceptions::PyRuntimeError;
-use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict};
+use numpy::PyArrayMethods;
 use viscocontact::plot::{self as vp, Chart, Map, Quantity};
 
-use crate::arrays::{cell_values, column};
-use crate::contact::ViscoelasticContact;
-use crate::elastic::ElasticContact;
-use crate::errors::{OrRaise, choice};
-use crate::fields::{Fields, Showing, Shown};
-use crate::grid::Grid;
-use crate::interrupt::free;
-use crate::kernels::axis;
+use crate::arrays::cell_values;
+use crate::fields::Showing;
+use crate::prelude::*;
 use crate::stress::QUANTITIES;
-use crate::used::{Shared, Taken};
 use crate::writers::FIELDS;
 
 /// The quantity of an axis; the empty unit is that of a number.

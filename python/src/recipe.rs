@@ -1,11 +1,8 @@
 //! How an object was made: its repr, its pickle, its copies and what it equals are the call that made it.
 
-use pyo3::gc::PyVisit;
-use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyFloat, PyInt, PyTuple, PyType};
+use crate::prelude::*;
+use pyo3::types::{PyFloat, PyInt, PyType};
 use pyo3::{Borrowed, PyTypeInfo};
-
-use crate::used::{Function, Traversed};
 
 /// A call of a class, or of one of its static methods.
 pub struct Recipe {

@@ -1,11 +1,7 @@
 //! Reports of steps, and states of bodies.
 
-use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use crate::prelude::*;
 use viscocontact::contact as ct;
-
-use crate::errors::in_python;
-use crate::recipe::digits;
 
 /// The outcome and the cost of one step.
 ///
@@ -18,26 +14,6 @@ pub struct StepReport(pub ct::StepReport);
 
 #[pymethods]
 impl StepReport {
-    /// The numbers by name: a row of a `pandas.DataFrame`. Areas are those of the contact: `Run.table` has them.
-    fn as_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let of = &self.0;
-        Ok(dict! { py;
-            "time": of.time,
-            "dt": of.dt,
-            "force": of.force,
-            "approach": of.approach,
-            "tilt1": of.tilt[0],
-            "tilt2": of.tilt[1],
-            "convolution_equivalents": of.convolution_equivalents(),
-            "residual": of.residual,
-            "contact_cells": of.contact_cells,
-            "time_error": of.time_error,
-            "iterations": of.iterations,
-            "fallback_iterations": of.fallback_iterations,
-            "warnings": self.warnings(),
-        })
-    }
-
     /// The numbers behind the warnings, None where the scene is far from the limit: "max_slope", "compression", "cells_across", "cells_in_wave", "periods",
     /// "cells_in_zone", "modulus" [Pa], "touch" [m], "unmeasured" and "wake".
     #[getter]

@@ -1,17 +1,10 @@
 //! Rheologies: the shear creep of bodies.
 
-use std::sync::Arc;
-
-use numpy::{Complex64, IntoPyArray, PyArrayMethods};
-use pyo3::exceptions::PyValueError;
-use pyo3::prelude::*;
+use numpy::{Complex64, PyArrayMethods};
 use viscocontact::rheology::{self as rh, CreepSpectrum, Rheology as Body};
 
-use crate::arrays::{FROM_ZERO, column, mapped, never, pairs, values};
-use crate::errors::{OrRaise, no_violation};
-use crate::interrupt::free;
-use crate::recipe::{Recipe, Value};
-use crate::used::Function;
+use crate::arrays::{pairs, values};
+use crate::prelude::*;
 
 /// The shear creep of a linear viscoelastic body: J(t), the strain after a unit shear stress [1/Pa].
 ///

@@ -1,28 +1,14 @@
 //! Runs along a load history.
 
-use std::path::PathBuf;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-
-use pyo3::exceptions::PyTypeError;
-use pyo3::gc::PyVisit;
-use pyo3::prelude::*;
-use pyo3::types::PyDict;
 use viscocontact as vc;
 use viscocontact::contact::StepReport as Report;
 use viscocontact::fields::KeptFields;
 use viscocontact::run::{self as vr, Crossing};
 
 use crate::arrays;
-use crate::contact::ViscoelasticContact;
-use crate::errors::{Cancelled, OrRaise, choice, raised_number};
-use crate::fields::Fields;
+use crate::errors::Cancelled;
 use crate::held::Led;
-use crate::interrupt::free;
-use crate::recipe::{Recipe, digits};
-use crate::reports::StepReport;
-use crate::states_contact::StatesContact;
-use crate::used::{Function, Shared, Taken, Traversed, goes_on, in_use};
+use crate::prelude::*;
 
 /// The contact that a run leads.
 #[derive(IntoPyObjectRef)]

@@ -1,19 +1,10 @@
 //! The parts of a contact, by keyword.
 
-use pyo3::exceptions::{PyTypeError, PyValueError};
-use pyo3::prelude::*;
-use pyo3::types::PyDict;
 use viscocontact::contact::{Builder, Edge, Frame, Settings, TimeRule};
 use viscocontact::{self as vc, ViscoelasticContact};
 
 use crate::attraction::Attraction;
-use crate::errors::choice;
-use crate::grid::{Count, Grid};
-use crate::kernels::InfluenceKernel;
-use crate::loads::history;
-use crate::materials::Material;
-use crate::shapes::geometries;
-use crate::temperature::TemperatureHistory;
+use crate::prelude::*;
 
 /// Changes a setting if it is one of the keyword `name`.
 fn setting(settings: Settings, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Option<Settings>> {
@@ -40,31 +31,20 @@ fn setting(settings: Settings, name: &str, value: &Bound<'_, PyAny>) -> PyResult
 pub fn settings(base: Settings, given: &Bound<'_, PyDict>) -> PyResult<Settings> {
     given.iter().try_fold(base, |settings, (name, value)| {
         let name: String = name.extract()?;
-        setting(settings, &name, &value)?.ok_or_else(|| unexpected("the contact problem", &name, &OPTIONS[5..]))
+        setting(settings, &name, &value)?.ok_or_else(|| unexpected("the contact problem", &name, OPTIONS))
     })
 }
 
 /// The keywords of a contact.
-const OPTIONS: [&str; 13] = [
-    "counter_body",
-    "kernel",
-    "attraction",
-    "temperature",
-    "times",
-    "tolerance",
-    "max_iterations",
-    "time_rule",
-    "edge",
-    "series_tolerance",
-    "symmetry",
-    "window",
-    "frame",
-];
+const OPTIONS: &str = "counter_body kernel attraction temperature times tolerance max_iterations time_rule edge series_tolerance \
+    symmetry window frame";
 
 /// The error of a keyword that `of` does not have: with the nearest one.
-pub fn unexpected(of: &str, name: &str, known: &[&str]) -> PyErr {
+pub fn unexpected(of: &str, name: &str, known: &str) -> PyErr {
     let nearest = Python::attach(|py| {
-        py.import("difflib")?.call_method1("get_close_matches", (name, known.to_vec(), 1))?.extract::<Vec<String>>()
+        py.import("difflib")?
+            .call_method1("get_close_matches", (name, known.split_whitespace().collect::<Vec<_>>(), 1))?
+            .extract::<Vec<String>>()
     });
     let hint = nearest.ok().and_then(|names| names.first().map(|name| format!(": did you mean '{name}'?")));
     PyTypeError::new_err(format!("{of}() got an unexpected keyword argument '{name}'{}", hint.unwrap_or_default()))
@@ -113,7 +93,7 @@ pub fn builder(
                     Err(_) => builder.times_of(&*history(&first)?, last),
                 }
             }
-            _ => return Err(unexpected("a contact", &name, &OPTIONS)),
+            _ => return Err(unexpected("a contact", &name, OPTIONS)),
         };
     }
     Ok(builder.settings(changed))

@@ -1,19 +1,10 @@
 //! Shapes: the gap between the bodies before they deform.
 
-use std::sync::Arc;
-
-use pyo3::exceptions::PyTypeError;
-use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
 use vc::geometry::{self as geo, Geometry};
 use viscocontact as vc;
 
-use crate::arrays::{Array, cell_values, number, to_array};
-use crate::errors::{OrRaise, no_violation, nothing_raised};
-use crate::grid::Grid;
-use crate::interrupt::free;
-use crate::recipe::{Recipe, Value};
-use crate::used::Function;
+use crate::arrays::{cell_values, number};
+use crate::prelude::*;
 
 /// A shape: the gap between the undeformed bodies over the plane of contact, `+inf` where there is nothing to touch.
 ///

@@ -1,20 +1,8 @@
 //! Friction and gradients of contacts on elastic states.
 
-use std::sync::Arc;
-
-use pyo3::exceptions::PyTypeError;
-use pyo3::prelude::*;
-use pyo3::types::PyDict;
 use viscocontact::states as st;
 
-use crate::arrays::{Array, to_array};
-use crate::elastic::ElasticContact;
-use crate::errors::OrRaise;
-use crate::interrupt::{free, interruptible};
-use crate::loads::{Load, LoadHistory};
-use crate::reports::StepReport;
-use crate::states_contact::StatesContact;
-use crate::used::{Shared, Taken};
+use crate::prelude::*;
 
 /// A contact with the friction of keywords.
 pub fn rubbing(

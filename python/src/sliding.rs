@@ -1,30 +1,13 @@
 //! Steady sliding and rolling: one problem a velocity.
 
-use std::path::PathBuf;
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
-
 use numpy::Complex64;
-use pyo3::exceptions::{PyRuntimeError, PyTypeError};
-use pyo3::gc::PyVisit;
-use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
 use viscocontact::fields as vf;
 use viscocontact::sliding as sl;
 
 use crate::arrays::{number, vectors};
-use crate::errors::{Kept, OrRaise, choice, in_python};
-use crate::fields::{Fields, Shown};
-use crate::grid::Grid;
-use crate::interrupt::{Listener, free, interruptible};
-use crate::loads::{Load, loads};
-use crate::materials::Material;
 use crate::pictures::{Picture, quantity};
-use crate::recipe::digits;
+use crate::prelude::*;
 use crate::reports::figures;
-use crate::scene::builder;
-use crate::temperature::TimeTemperature;
-use crate::used::{Function, Shared, Taken, Traversed};
 
 /// The complex number that a function in Python gives at a frequency.
 pub fn complex(function: &Function, omega: f64, kept: &Kept) -> Complex64 {
@@ -144,6 +127,7 @@ impl SteadySliding {
         signature = (grid, geometry, material, *, base=None, modulus=None, counter_motion=None, **options),
         text_signature = "(grid, geometry, material, *, base=None, modulus=None, counter_motion=None, **options)"
     )]
+    #[allow(clippy::too_many_arguments)]
     fn new(
         py: Python<'_>,
         grid: Bound<'_, Grid>,

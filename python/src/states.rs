@@ -1,33 +1,16 @@
 //! Elastic states: many materials, histories and temperatures on one surface.
 
-use std::path::PathBuf;
-use std::sync::Arc;
-
-use numpy::IntoPyArray;
-use pyo3::exceptions::PyTypeError;
-use pyo3::gc::PyVisit;
-use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict};
 use viscocontact::contact::Settings;
 use viscocontact::output::{Metadata, read_states, states_from_bytes, states_to_bytes, write_states};
 use viscocontact::run::{Contact, Stepping};
 use viscocontact::states as st;
 use viscocontact::{self as vc};
 
-use crate::arrays::{ALL, Array, FROM_ZERO, column, mapped, never, table, to_array};
-use crate::errors::OrRaise;
-use crate::grid::{Count, Grid};
+use crate::arrays::table;
 use crate::held::Led;
-use crate::interrupt::{Listener, free};
-use crate::kernels::InfluenceKernel;
-use crate::loads::{Tilts, history, tilts};
-use crate::materials::Material;
-use crate::recipe::{Recipe, Reduced, Value};
+use crate::loads::{Tilts, tilts};
+use crate::prelude::*;
 use crate::run::asked_for;
-use crate::scene::settings;
-use crate::shapes::geometries;
-use crate::temperature::TemperatureHistory;
-use crate::used::{Function, Traversed};
 
 /// The elastic states of a surface, found once: any material, history and temperature on it is then a matter of microseconds a step.
 ///

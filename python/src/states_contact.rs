@@ -1,25 +1,11 @@
 //! A contact of one material on elastic states.
 
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
-
-use pyo3::prelude::*;
 use viscocontact::contact as ct;
 use viscocontact::states as st;
 
-use crate::arrays::{Array, to_array};
-use crate::errors::OrRaise;
-use crate::fields::Fields;
 use crate::held::Held;
-use crate::interrupt::free;
-use crate::loads::{Load, LoadHistory};
-use crate::materials::Material;
-use crate::recipe::{Recipe, digits};
-use crate::reports::StepReport;
+use crate::prelude::*;
 use crate::sheared::rubbing;
-use crate::states::ElasticStates;
-use crate::temperature::TemperatureHistory;
-use crate::used::{Shared, Taken};
 
 /// A contact of one material on elastic states, advanced like a `ViscoelasticContact`.
 ///

@@ -1,23 +1,12 @@
 //! The stress below the surface, and what follows a run: its history, and the balance of its energy.
 
-use std::path::PathBuf;
-
-use pyo3::prelude::*;
-use pyo3::types::PyDict;
 use viscocontact::contact as ct;
 use viscocontact::observe::{self as ob, Stress};
 use viscocontact::output::{Format, write_stress};
 
-use crate::arrays::{Array, field, table, to_array};
-use crate::contact::ViscoelasticContact;
-use crate::errors::{OrRaise, choice};
-use crate::fields::{Showing, Shown};
-use crate::grid::Grid;
-use crate::interrupt::free;
-use crate::kernels::{InfluenceKernel, axis};
-use crate::recipe::digits;
-use crate::reports::StepReport;
-use crate::used::{Shared, Taken};
+use crate::arrays::{field, table};
+use crate::fields::Showing;
+use crate::prelude::*;
 use crate::writers::{FORMATS, metadata};
 
 /// The stress below the surface [Pa]: tension positive, x3 the depth. Components are in the order 11, 22, 33, 12, 13, 23.

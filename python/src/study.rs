@@ -1,30 +1,13 @@
 //! Convergence studies: the measured error of a result in mesh and time.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
-use std::sync::Arc;
 
-use pyo3::exceptions::PyValueError;
-use pyo3::gc::PyVisit;
-use pyo3::prelude::*;
-use pyo3::types::PyDict;
 use viscocontact::plot::Chart;
 use viscocontact::run::Stepping;
 use viscocontact::study::{self as vs, Accuracy, Cost, Observable, StudyResult};
 use viscocontact::{Axis, Error, ViscoelasticContact as Contact};
 
-use crate::contact::ViscoelasticContact;
-use crate::errors::{OrRaise, raised_number};
-use crate::fields::Fields;
-use crate::grid::{Grid, count};
-use crate::interrupt::{Listener, free};
-use crate::kernels::InfluenceKernel;
-use crate::loads::history;
-use crate::materials::Material;
-use crate::recipe::Recipe;
-use crate::shapes::Shape;
-use crate::temperature::TemperatureHistory;
-use crate::used::{Function, Traversed};
+use crate::prelude::*;
 
 const QUANTITIES: [(&str, Observable); 4] = [
     ("approach", Observable::Approach),

@@ -1,15 +1,9 @@
 //! Temperature: how it shifts the time scale of a material, and its history.
 
-use std::sync::Arc;
-
-use pyo3::prelude::*;
 use viscocontact::rheology as rh;
 
-use crate::arrays::{FROM_ZERO, mapped, never, number, pairs};
-use crate::errors::{OrRaise, raised_number};
-use crate::recipe::{Recipe, Value};
-use crate::rheology::Rheology;
-use crate::used::Function;
+use crate::arrays::{number, pairs};
+use crate::prelude::*;
 
 /// How temperature shifts the time scale: a_T, by which all times of a material are multiplied at a temperature T [K]; and b_T, by which its
 /// moduli are, if the law has vertical factors.

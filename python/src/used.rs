@@ -1,13 +1,11 @@
 //! Objects of Python that Rust holds: contacts that another thread may use meanwhile, and functions.
 
 use std::ops::{Deref, DerefMut};
-use std::sync::Arc;
 
+use crate::prelude::*;
 use pyo3::call::PyCallArgs;
 use pyo3::conversion::FromPyObjectOwned;
-use pyo3::exceptions::{PyRuntimeError, PyTypeError};
 use pyo3::gc::PyTraverseError;
-use pyo3::prelude::*;
 use pyo3::pyclass::boolean_struct::False;
 use pyo3::{Borrowed, PyClass};
 

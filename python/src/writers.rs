@@ -1,19 +1,9 @@
 //! Files of results: histories, frames, archives.
 
-use std::path::PathBuf;
-
-use pyo3::exceptions::PyTypeError;
-use pyo3::prelude::*;
-use pyo3::types::PyDict;
 use viscocontact::output::{self as vo, Earlier, Field, Format, Metadata};
 
-use crate::contact::ViscoelasticContact;
-use crate::errors::{OrRaise, choice};
-use crate::fields::{Showing, Shown};
-use crate::interrupt::free;
-use crate::reports::StepReport;
-use crate::states_contact::StatesContact;
-use crate::used::{Shared, Taken};
+use crate::fields::Showing;
+use crate::prelude::*;
 
 pub fn metadata(title: &str, notes: Option<&Bound<'_, PyDict>>) -> PyResult<Metadata> {
     notes.into_iter().flatten().try_fold(Metadata::new(title), |metadata, (key, value)| {

@@ -120,6 +120,14 @@ def from_topography(topography):
     return native.HeightMap(heights * metres, lengths, bool(getattr(topography, "is_periodic", False)))
 
 
+ROW = ("time", "dt", "force", "approach", "convolution_equivalents", "residual", "contact_cells", "time_error", "iterations", "fallback_iterations", "warnings")
+
+
+def as_dict(self):
+    """The numbers by name, with "tilt1" and "tilt2": a row of a `pandas.DataFrame`. Areas are those of the contact: `Run.table` has them."""
+    return {name: getattr(self, name) for name in ROW} | {"tilt1": self.tilt[0], "tilt2": self.tilt[1]}
+
+
 def history_to_dataframe(self):
     """The rows written so far as a `pandas.DataFrame`, the same numbers bit by bit."""
     import pandas
@@ -140,5 +148,6 @@ def attach():
     for kind in (*tables, *fields):
         kind.plot = plot
     native.Fit.plot = _plot_fit
+    native.StepReport.as_dict = as_dict
     native.CsvHistory.to_dataframe = history_to_dataframe
     native.HeightMap.from_topography = staticmethod(from_topography)

@@ -1,6 +1,7 @@
-"""The values of calls: how objects were made, which is what they show, pickle and compare."""
+"""The values of calls: what is read of them, and how objects were made, which is what they show, pickle and compare."""
 
 import copy
+import warnings
 
 import numpy as np
 
@@ -49,3 +50,33 @@ def shown(kind, maker, arguments, keywords):
     if maker == "__add__":
         return " + ".join(values)
     return f"{kind.__name__}{'.' if maker else ''}{maker}({', '.join(values)})"
+
+
+def numbers(name, value):
+    """An array of real numbers in the order of rows; NaN where a mask is."""
+    # NumPy takes an iterator, as of `zip`, for one value
+    value = list(value) if hasattr(value, "__next__") else value
+    array = np.asarray(value)
+    try:
+        array = array.astype("float64", casting="same_kind", copy=False, order="C")
+    except TypeError:
+        raise TypeError(f"{name}: an array of real numbers is needed, not of {array.dtype}") from None
+    return np.where(np.ma.getmaskarray(value), np.nan, array) if np.ma.isMaskedArray(value) else array
+
+
+def squared(cells, lengths, only_warns):
+    """Refuses sides that make squares of the cells if they are exchanged, and only then."""
+    (n1, n2), (l1, l2) = cells, lengths
+
+    def is_square(a, b):
+        return abs(a * n2 / (b * n1) - 1) < 1e-3
+
+    if is_square(l1, l2) or not is_square(l2, l1):
+        return
+    text = (
+        f"lengths = ({l1}, {l2}) are those of the other axes: the map has {n1} points along x1 and {n2} along x2; give "
+        f"lengths=({l2}, {l1}), or the other orientation, \"array\" or \"picture\""
+    )
+    if not only_warns:
+        raise ValueError(text)
+    warnings.warn(text, UserWarning, stacklevel=2)

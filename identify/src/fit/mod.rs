@@ -229,7 +229,7 @@ impl Fit {
         let coordinates = self.problem.coordinates(&self.values);
         let moved = |column, width| self.modulus_of(&self.problem.moved(&coordinates, column, width), t).ln();
         // derivatives of ln E by the coordinates, which may all be moved either way
-        if !(t >= 0.0) {
+        if t.is_nan() || t < 0.0 {
             return [f64::NAN; 2];
         }
         let slopes = Col::from_fn(coordinates.len(), |column| {

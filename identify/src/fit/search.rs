@@ -33,6 +33,7 @@ impl Identification {
     /// If no curve is given, a parameter has an unknown name or a value outside its range, a tip never touches or goes beyond its
     /// last elastic state, there are not more points than parameters, or the search does not converge.
     pub fn fit(&self, curves: &[Curve]) -> Result<Fit> {
+        self.goes_on()?;
         let mut problem = self.problem(curves.to_vec())?;
         if let Some(curve) = curves.iter().position(|curve| is_flat(&curve.force)) {
             return Err(Error::NoContact { curve });
