@@ -18,7 +18,14 @@ create_exception!(
     PyValueError,
     "The body slides: friction cannot carry the forces along the surface, and the contact is as it was before the step. Prescribe its \
      motion to see it slide. `over_limit` is the force over what is carried (infinite where the bodies are apart), `direction` the motion \
-     in space: shifts along x1 and x2 [m] and the twist [rad], of the largest component 1; None on elastic states."
+     in space: shifts along x1 and x2 [m] and the twist [rad], of the largest component 1; None on elastic states.
+
+>>> contact = StatesContact(ElasticStates.sphere(10e-3), Material(Rheology.elastic(1e6)), estimated_friction=0.5)
+>>> try:
+...     report = contact.step_sheared(0.0, Load.force(1.0), Load.force(1.0))
+... except Slides as slides:
+...     print(slides.over_limit)
+2.0"
 );
 
 /// The exception of a body that slides.
