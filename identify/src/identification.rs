@@ -1,8 +1,6 @@
 //! What is to be identified, and from what.
 
-use std::fmt;
 use std::ops::ControlFlow;
-use std::sync::Arc;
 
 use viscocontact::numeric::{LeastSquares, least_squares};
 
@@ -14,6 +12,7 @@ use crate::model::Model;
 use crate::noise::Noise;
 use crate::parameters::{Chosen, Kind, Nuisance, Parameter, PerCurve, Property};
 use crate::problem::Problem;
+use crate::watch::Watch;
 
 /// Steps after which a search has failed, if the last one reduces the sum of squares by more than a fraction.
 const MAX_STEPS: usize = 200;
@@ -51,24 +50,14 @@ pub struct Identification {
     pub(crate) noise: Noise,
     sigma: Option<f64>,
     pub(crate) robust: bool,
-    watch: Watch,
-}
-
-/// Whether a search goes on.
-#[derive(Clone)]
-struct Watch(Arc<dyn Fn() -> ControlFlow<()> + Send + Sync>);
-
-impl fmt::Debug for Watch {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a watch")
-    }
+    pub(crate) watch: Watch,
 }
 
 impl Identification {
     /// Identifies the parameters of a model; everything else is known until stated otherwise.
     pub fn new(model: Model) -> Identification {
-        let watch = Watch(Arc::new(|| ControlFlow::Continue(())));
-        Identification { model, chosen: Chosen::default(), noise: Noise::White, sigma: None, robust: false, watch }
+        let (chosen, watch) = (Chosen::default(), Watch::default());
+        Identification { model, chosen, noise: Noise::White, sigma: None, robust: false, watch }
     }
 
     /// A parameter by its name, of the material or of the measurement. A list has one for each curve: of the material, for each curve of
@@ -138,19 +127,11 @@ impl Identification {
         self
     }
 
-    /// Calls `goes_on` before each step of a search, on the thread of the search: where it breaks, the call ends as a cancelled one
+    /// Calls `goes_on` during each step of a search, on the thread of the search: where it breaks, the call ends as a cancelled one
     /// ([`viscocontact::Error::Cancelled`]). For progress bars and interruption, of what a [`Fit`](crate::Fit) computes later, too.
     pub fn watched(mut self, goes_on: impl Fn() -> ControlFlow<()> + Send + Sync + 'static) -> Identification {
-        self.watch = Watch(Arc::new(goes_on));
+        self.watch = Watch::new(goes_on);
         self
-    }
-
-    /// Ends a call whose watch breaks.
-    pub(crate) fn goes_on(&self) -> Result<()> {
-        match (self.watch.0)() {
-            ControlFlow::Continue(()) => Ok(()),
-            ControlFlow::Break(()) => Err(viscocontact::Error::Cancelled { what: "the fit" }.into()),
-        }
     }
 
     /// Checks what is chosen before there is a curve: values given, the noise, and the numbers of the model.
@@ -250,12 +231,7 @@ impl Identification {
             let is_slow = last > 0.5 * before && last <= SLOW_ENOUGH;
             at.sum() <= rounding || last <= problem.enough || is_slow || at.steps == MAX_STEPS
         };
-        let found = least_squares(
-            start,
-            |x| self.goes_on().and_then(|()| problem.residuals(x)),
-            |x| self.goes_on().and_then(|()| problem.slopes(x)),
-            is_enough,
-        )?;
+        let found = least_squares(start, |x| problem.residuals(x), |x| problem.slopes(x), is_enough)?;
         if found.steps < MAX_STEPS || found.reductions[0] <= SLOW {
             return Ok(found);
         }
@@ -270,7 +246,7 @@ impl Identification {
             positive("standard deviation of the noise", sigma)?;
         }
         self.noise.suits(curves.len())?;
-        Problem::new(self.model, &self.chosen, curves, &self.noise)
+        Ok(Problem { watch: self.watch.clone(), ..Problem::new(self.model, &self.chosen, curves, &self.noise)? })
     }
 
     /// The problem of experiments that have no data yet.

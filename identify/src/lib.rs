@@ -52,6 +52,7 @@ mod identification;
 mod model;
 mod noise;
 mod parameters;
+mod part;
 #[cfg(feature = "plot")]
 mod plot;
 mod problem;
@@ -65,6 +66,7 @@ mod statistics;
 pub mod tips;
 pub mod usual;
 mod verify;
+mod watch;
 #[cfg(any(doc, doctest))]
 pub mod guide {
     #![doc = include_str!("../docs/guide.md")]

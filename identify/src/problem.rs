@@ -6,92 +6,25 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use faer::Mat;
 
 use crate::error::{Error, Result};
-use crate::experiment::{Curve, Experiment};
-use crate::forward::{Cycle, LANES, PLAIN, Real, Sample, Tip};
+use crate::experiment::Curve;
+use crate::forward::{Cycle, LANES, PLAIN, Real, Sample};
 use crate::model::{Model, Scale};
 use crate::noise::{Noise, Whitening};
 use crate::parameters::{Chosen, Kind, Parameter, Property};
+pub(crate) use crate::part::Part;
+use crate::part::ROUGH;
 use crate::protocol::Protocol;
 use crate::series::Prony;
-use crate::statistics::mean;
+use crate::watch::Watch;
 
 /// Least share of a modulus that relaxes.
 const LEAST_SHARE: f64 = 1e-12;
-/// Samples of a curve with which a search begins.
-const ROUGH: usize = 128;
 /// A search ends with the step that reduces the sum of squares by less than this fraction; one with few samples, early.
 const ENOUGH: [f64; 2] = [1e-10, 1e-4];
 /// Residuals are rounding below this fraction of the squared data.
 const EXACT: f64 = 1e-18;
 /// Width of coordinates over which derivatives of parameters are taken.
 pub(crate) const WIDTH: f64 = 1e-5;
-
-/// One curve of a problem.
-#[derive(Clone, Debug)]
-pub(crate) struct Part {
-    /// Experiment and measured forces: zeros where none are measured yet.
-    pub(crate) curve: Curve,
-    pub(crate) whitening: Whitening,
-    /// Weight of the residuals made white.
-    pub(crate) scale: f64,
-    /// A further weight of each: below 1 for outliers.
-    pub(crate) outliers: Vec<f64>,
-    tip: Tip,
-    /// Speed of the drive at each sample \[m/s\].
-    speed: Vec<f64>,
-}
-
-impl Part {
-    fn new(index: usize, curve: Curve, noise: &Noise) -> Result<Part> {
-        let whitening = Whitening::of(noise, index, curve.force.len())?;
-        let Protocol { times, drive } = &curve.experiment.protocol;
-        let last = times.len() - 1;
-        let speed = |k: usize| {
-            let [a, b] = [k.saturating_sub(1), (k + 1).min(last)];
-            (drive[b] - drive[a]) / (times[b] - times[a])
-        };
-        let (speed, outliers) = ((0..=last).map(speed).collect(), vec![1.0; times.len()]);
-        let tip = Tip::new(index, &curve.experiment.tip, curve.experiment.surface);
-        Ok(Part { curve, whitening, scale: 1.0, outliers, tip, speed })
-    }
-
-    /// Means of neighbouring samples, as if their noise were white.
-    fn thinned(&self) -> Part {
-        let of = |values: &[f64]| -> Vec<f64> { values.chunks(self.len().div_ceil(ROUGH)).map(mean).collect() };
-        let Protocol { times, drive } = &self.curve.experiment.protocol;
-        let protocol = Protocol { times: of(times), drive: of(drive) };
-        let experiment = Experiment { protocol, ..self.curve.experiment.clone() };
-        let curve = Curve { experiment, force: of(&self.curve.force) };
-        let (outliers, speed, whitening) = (of(&self.outliers), of(&self.speed), Whitening::Autoregressive(0.0));
-        Part { curve, whitening, outliers, speed, ..self.clone() }
-    }
-
-    pub(crate) fn len(&self) -> usize {
-        self.speed.len()
-    }
-
-    /// Makes a column of the data white, with its weights.
-    pub(crate) fn whiten(&self, column: &mut [f64]) {
-        self.whitening.apply(column);
-        column.iter_mut().zip(&self.outliers).for_each(|(value, weight)| *value *= self.scale * weight);
-    }
-
-    /// −ln of the determinant of the covariance, up to the factor σ².
-    pub(crate) fn log_weight(&self) -> f64 {
-        self.whitening.log_weight() + 2.0 * self.len() as f64 * self.scale.ln()
-    }
-
-    /// The force at a sample over a property in which it is linear.
-    fn force_over(&self, property: Property, sample: usize) -> f64 {
-        let Protocol { times, drive } = &self.curve.experiment.protocol;
-        match property {
-            Property::Drift => times[sample] - times[0],
-            Property::Tilt => drive[sample] - drive[0],
-            Property::Drag => self.speed[sample],
-            _ => 1.0,
-        }
-    }
-}
 
 /// All curves, and the parameters of their forces.
 #[derive(Clone, Debug)]
@@ -105,6 +38,8 @@ pub(crate) struct Problem {
     pub(crate) enough: f64,
     /// Exponentials that were advanced by a sample, each derivative counted.
     pub(crate) work: Arc<AtomicUsize>,
+    /// What may end a search.
+    pub(crate) watch: Watch,
 }
 
 impl Problem {
@@ -118,7 +53,15 @@ impl Problem {
         let window = [shortest, times().map(|t| t[t.len() - 1] - t[0]).fold(0.0, f64::max)];
         let part = |(index, curve): (usize, Curve)| Part::new(index, curve, noise);
         let parts = curves.into_iter().enumerate().map(part).collect::<Result<_>>()?;
-        Ok(Problem { model, parts, parameters, window, enough: ENOUGH[0], work: Arc::default() })
+        Ok(Problem {
+            model,
+            parts,
+            parameters,
+            window,
+            enough: ENOUGH[0],
+            work: Arc::default(),
+            watch: Watch::default(),
+        })
     }
 
     /// The same problem with few samples, on which a search is cheap; `None` where there are few, or their noise is given by a matrix.
@@ -325,6 +268,7 @@ impl Problem {
         let values = self.values(coordinates);
         let prony = self.prony(&values)?;
         let deviations = |curve: usize| {
+            self.watch.goes_on()?;
             let force = self.force(curve, &values, &prony)?;
             Ok(force.iter().zip(&self.parts[curve].curve.force).map(|(force, data)| force - data).collect())
         };
@@ -365,6 +309,7 @@ impl Problem {
                 }
             }
             for lanes in curved.chunks(LANES - 1) {
+                self.watch.goes_on()?;
                 let dual = |value: f64, slope: &dyn Fn(usize, &Parameter) -> f64| {
                     Real::new(value, std::array::from_fn(|lane| lanes.get(lane).map_or(0.0, |&(c, p)| slope(c, p))))
                 };

@@ -136,7 +136,7 @@ impl Identification {
 
     /// Fits a curve, or several of one material together.
     ///
-    /// `progress` is called without arguments before each step of the search; the fit ends with `Cancelled` where it returns False. Ctrl-C
+    /// `progress` is called without arguments, some times in each step of the search; the fit ends with `Cancelled` where it returns False. Ctrl-C
     /// ends it, too.
     ///
     /// Raises ValueError if the curves do not suit, ConvergenceError if the search does not converge.

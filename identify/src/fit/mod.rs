@@ -178,12 +178,13 @@ impl Fit {
     /// The same with a watch over what it computes from now on ([`Identification::watched`]).
     pub fn watched(mut self, goes_on: impl Fn() -> ControlFlow<()> + Send + Sync + 'static) -> Fit {
         self.identification = self.identification.watched(goes_on);
+        self.problem.watch = self.identification.watch.clone();
         self
     }
 
     /// Ends a call whose watch breaks.
     pub(crate) fn goes_on(&self) -> Result<()> {
-        self.identification.goes_on()
+        self.identification.watch.goes_on()
     }
 
     /// The model that was fitted.

@@ -33,7 +33,7 @@ impl Identification {
     /// If no curve is given, a parameter has an unknown name or a value outside its range, a tip never touches or goes beyond its
     /// last elastic state, there are not more points than parameters, or the search does not converge.
     pub fn fit(&self, curves: &[Curve]) -> Result<Fit> {
-        self.goes_on()?;
+        self.watch.goes_on()?;
         let mut problem = self.problem(curves.to_vec())?;
         if let Some(curve) = curves.iter().position(|curve| is_flat(&curve.force)) {
             return Err(Error::NoContact { curve });
@@ -106,6 +106,7 @@ impl Identification {
             let values = problem.of_contained(inner, &simpler.values(&minimum.coordinates));
             Some((inner, minimum.sum(), problem.coordinates(&values)))
         });
+        self.watch.goes_on()?;
         let start = inside.iter().map(|(.., coordinates)| coordinates.clone());
         let rough = problem.thinned();
         let some = rough.as_ref().unwrap_or(problem);
