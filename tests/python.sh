@@ -29,6 +29,15 @@ cp pyproject.toml "$folder"
 cd "$folder"
 export VISCOCONTACT_SCENES_IN_RUST="$CARGO_TARGET_DIR/debug/examples/scenes" PYTHONPATH="$folder" VISCOCONTACT_REPOSITORY="$repository"
 "$python" -m pytest --quiet tests
+"$python" -m mypy.stubtest viscocontact
+# the notebooks print what is stored, beside Tamaas and with PyTorch where these are installed; the reference needs pdoc
+for more in pdoc tamaas; do
+    "$python" -c "import $more" 2>/dev/null || "$python" -m pip install --quiet "$more" 2>/dev/null || echo "without $more"
+done
+"$python" "$repository/python/documents/execute.py"
+if "$python" -c "import pdoc" 2>/dev/null; then
+    "$python" "$repository/python/documents/reference.py" "$repository/target/ci/python/reference"
+fi
 "$python" -m mypy.stubtest viscocontact --mypy-config-file pyproject.toml
 "$python" "$repository/python/licences.py" --check
 # unpacked elsewhere, it has all that a build needs; a job of the forge compiles it

@@ -1,8 +1,9 @@
 //! What contacts in space and on elastic states have in common: runs, copies, checkpoints, and pickles through them.
 
-use pyo3::types::PyType;
+use pyo3::types::{PyList, PyType};
 
 use crate::held::{Options, saved_every, stepping, times};
+use crate::loads::histories;
 use crate::prelude::*;
 use crate::run::Run;
 
@@ -19,6 +20,7 @@ macro_rules! both {
             /// Parameters
             /// ----------
             /// load : LoadHistory, Load (held), sequence of (time, load), or function of time that returns a Load
+            ///     In space of several bodies, a sequence with one of these for each.
             /// until : float
             /// tolerance : float, default 1e-3
             ///     Steps are as long as their estimated error in time allows, and each contact problem is solved as accurately as this needs: less accurately
@@ -60,12 +62,12 @@ macro_rules! both {
             ) -> PyResult<Run> {
                 let (stop_at, sample_at) = (times("stop_at", stop_at)?, times("sample_at", sample_at)?);
                 let (stepping, autosave) = (stepping(dt, tolerance)?, saved_every(autosave)?);
-                let (sampled, load) = (sample_at.is_some(), LoadHistory::any(load)?);
-                let history = Arc::clone(&load.get().history);
-                let options = Options { history, stepping, until, stop_at, sample_at, fields_to, autosave };
+                let (sampled, loads) = (sample_at.is_some(), histories(load)?);
+                let histories = loads.iter().map(|load| Arc::clone(&load.get().history)).collect();
+                let options = Options { histories, stepping, until, stop_at, sample_at, fields_to, autosave };
                 let mut contact = Taken::try_from(&slf)?;
                 let cancel = Arc::clone(&contact.cancel);
-                let run = contact.held.follow(options, load.into_any().unbind(), cancel)?;
+                let run = contact.held.follow(options, PyList::new(slf.py(), loads)?.into_any().unbind(), cancel)?;
                 Ok(Run::of(slf.clone().unbind().into(), run, sampled, progress))
             }
 

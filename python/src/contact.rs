@@ -97,7 +97,7 @@ impl ViscoelasticContact {
 }
 
 /// Computes what is slow if there are many cells, or the last computation was long.
-fn timed<T>(last: &mut Duration, cells: usize, compute: impl FnOnce(bool) -> T) -> T {
+pub fn timed<T>(last: &mut Duration, cells: usize, compute: impl FnOnce(bool) -> T) -> T {
     let start = Instant::now();
     let result = compute(cells >= MANY_CELLS || *last > LONG);
     *last = start.elapsed();

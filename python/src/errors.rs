@@ -8,8 +8,11 @@ use std::sync::{Mutex, PoisonError};
 use crate::prelude::*;
 use pyo3::create_exception;
 use pyo3::exceptions::{PyException, PyMemoryError, PyNotImplementedError, PyOSError};
+use viscocontact::states::StatesError;
 use viscocontact::{Error, ErrorKind, FileError, UserError};
 use viscocontact_identify::Error as IdentifyError;
+
+use crate::friction::slides;
 
 create_exception!(
     viscocontact,
@@ -54,6 +57,9 @@ pub fn raise(error: &Error) -> PyErr {
         return raised;
     }
     let text = with_causes(error);
+    if let Error::States(StatesError::Slides { over_limit, .. }) = error {
+        return slides(text, *over_limit, None);
+    }
     match error.kind() {
         // a name that is not allowed, as any other value
         ErrorKind::File if matches!(error, Error::File(FileError::Extension { .. })) => PyValueError::new_err(text),
@@ -98,7 +104,7 @@ fn with_causes(error: &dyn StdError) -> String {
 }
 
 /// What messages of the crates name, and what it is called here.
-const NAMES: [(&str, &str); 12] = [
+const NAMES: [(&str, &str); 15] = [
     (
         "name the times to fit one over, with Builder::times (first and last) or Builder::times_of (a load history and its end), or fit one with Rheology::series or Material::fitted",
         "fit one with Material.fitted(first, last), or for a contact in space give times=(first, last) or times=(load, until)",
@@ -116,6 +122,9 @@ const NAMES: [(&str, &str); 12] = [
     ("of a Sweep of this process", "of ElasticStates.sweep in this process, neither loaded nor pickled"),
     ("Study::domain", "domain=(length, length)"),
     ("Earlier::Replace", "earlier=\"replace\""),
+    ("a greater Settings::tolerance", "a greater tolerance="),
+    ("call with_friction first", "give friction= or estimated_friction="),
+    ("with_estimated_friction takes", "estimated_friction= takes"),
     ("::", "."),
 ];
 

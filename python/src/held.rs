@@ -60,7 +60,7 @@ pub fn times(name: &str, given: Option<Bound<'_, PyAny>>) -> PyResult<Option<vr:
 
 /// What a run is asked for.
 pub struct Options {
-    pub history: Arc<dyn LoadHistory>,
+    pub histories: Vec<Arc<dyn LoadHistory>>,
     pub stepping: Stepping,
     pub until: f64,
     pub stop_at: Option<vr::Times>,
@@ -89,7 +89,7 @@ impl Options {
     /// Refuses times that a run would refuse, which would take the contact with it.
     fn check(&self) -> vc::Result<()> {
         let small = InStates::new(&ElasticStates::sphere(1.0)?, &Material::incompressible(Elastic::new(1.0)?))?;
-        self.ask(small.into_follow(Arc::clone(&self.history), self.stepping, self.until)).map(drop)
+        self.ask(small.into_follow(Arc::clone(&self.histories[0]), self.stepping, self.until)).map(drop)
     }
 
     fn ask<C: Led>(&self, run: vr::Run<'static, C>) -> vc::Result<vr::Run<'static, C>> {
@@ -108,6 +108,9 @@ pub trait Led: Contact {
 
     fn with_fields(run: vr::Run<'static, Self>, accuracy: f64) -> vc::Result<vr::Run<'static, Self>>;
 
+    /// A run along a history for each body.
+    fn along(self, of: &Options) -> vc::Result<vr::Run<'static, Self>>;
+
     /// The object of Python.
     fn into_object(self, py: Python<'_>, recipe: Recipe) -> PyResult<Py<PyAny>>;
 
@@ -118,12 +121,16 @@ pub trait Led: Contact {
 
 /// The objects of the contact in space and of the one on elastic states.
 macro_rules! led {
-    ($($contact:ty, $in_space:literal => $class:ty;)*) => {$(
+    ($($contact:ty, $in_space:literal, $along:expr => $class:ty;)*) => {$(
         impl Led for $contact {
             const IN_SPACE: bool = $in_space;
 
             fn with_fields(run: vr::Run<'static, Self>, accuracy: f64) -> vc::Result<vr::Run<'static, Self>> {
                 run.fields_to(accuracy)
+            }
+
+            fn along(self, of: &Options) -> vc::Result<vr::Run<'static, Self>> {
+                ($along)(self, of)
             }
 
             fn into_object(self, py: Python<'_>, recipe: Recipe) -> PyResult<Py<PyAny>> {
@@ -134,8 +141,13 @@ macro_rules! led {
 }
 
 led! {
-    vc::ViscoelasticContact, true => crate::contact::ViscoelasticContact;
-    InStates, false => crate::states_contact::StatesContact;
+    vc::ViscoelasticContact, true, |contact: Self, of: &Options| {
+        let histories = of.histories.iter().map(|one| Box::new(Arc::clone(one)) as Box<dyn LoadHistory>);
+        contact.into_follow_each(histories.collect(), of.stepping, of.until)
+    } => crate::contact::ViscoelasticContact;
+    InStates, false, |contact: Self, of: &Options| {
+        Ok(contact.into_follow(Arc::clone(&of.histories[0]), of.stepping, of.until))
+    } => crate::states_contact::StatesContact;
 }
 
 /// What the garbage collector of Python sees of a run: its load, and the functions of its events.
@@ -191,11 +203,15 @@ impl<C: Led> Held<C> {
     /// Begins a run, and returns its number.
     pub fn follow(&mut self, options: Options, load: Py<PyAny>, cancel: Arc<AtomicBool>) -> PyResult<u64> {
         options.check().or_raise()?;
-        self.free()?;
+        let (bodies, given) = (self.free()?.in_space().map_or(1, |fields| fields.bodies()), options.histories.len());
+        if given != bodies {
+            return Err(PyValueError::new_err(format!(
+                "load: {given} histories given, {bodies} needed, one for each body"
+            )));
+        }
         let Held::Free(contact) = std::mem::replace(self, Held::Lost) else { return Err(lost()) };
         let number = NEXT.fetch_add(1, Ordering::Relaxed);
-        let run =
-            contact.into_follow(Arc::clone(&options.history), options.stepping, options.until).cancelled_by(cancel);
+        let run = contact.along(&options).or_raise()?.cancelled_by(cancel);
         let mut run = options.ask(run).or_raise()?;
         if let Some((path, every)) = &options.autosave {
             run = run.autosave_to(path, *every);

@@ -13,6 +13,7 @@ mod elastic;
 mod errors;
 mod fields;
 mod fits;
+mod friction;
 mod grid;
 mod held;
 mod identify;
@@ -31,6 +32,7 @@ mod rheology;
 mod run;
 mod scene;
 mod shapes;
+mod sheared;
 mod sliding;
 mod states;
 mod states_contact;
@@ -68,6 +70,7 @@ mod _native {
         errors::{Cancelled, ConvergenceError},
         fields::Fields,
         fits::{Estimate, Fit, write_fits},
+        friction::{FrictionContact, FrictionLimit, ShearLoad, Slides},
         grid::Grid,
         held::Times,
         identify::{Identification, drainage_or_creep, ranked},

@@ -230,6 +230,17 @@ pub fn history(given: &Bound<'_, PyAny>) -> PyResult<Arc<dyn History>> {
     Ok(Arc::clone(&LoadHistory::any(given)?.get().history))
 }
 
+/// The histories of a run: one, or a sequence with one for each body.
+pub fn histories<'py>(given: &Bound<'py, PyAny>) -> PyResult<Vec<Bound<'py, LoadHistory>>> {
+    let one = match LoadHistory::any(given) {
+        Ok(one) => return Ok(vec![one]),
+        Err(error) => error,
+    };
+    let each = given.extract::<Vec<Bound<'_, PyAny>>>().ok().filter(|each| !each.is_empty());
+    let each = each.and_then(|each| each.iter().map(LoadHistory::any).collect::<PyResult<_>>().ok());
+    each.ok_or(one)
+}
+
 /// The loads of a step: one, or one for each body.
 pub fn loads(given: &Bound<'_, PyAny>) -> PyResult<Vec<ld::Load>> {
     if let Ok(load) = given.cast::<Load>() {

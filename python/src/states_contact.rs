@@ -5,6 +5,7 @@ use viscocontact::states as st;
 
 use crate::held::Held;
 use crate::prelude::*;
+use crate::sheared::rubbing;
 
 /// A contact of one material on elastic states, advanced like a `ViscoelasticContact`.
 ///
@@ -19,6 +20,13 @@ use crate::prelude::*;
 ///     Groups of levels merge where this changes force and depth by at most about this.
 /// exact_states : bool
 ///     Whether the elastic state of every step is solved exactly.
+/// friction : float, optional
+///     Coefficient of friction of bodies that respond alike to normal and to tangential loads: in line contact, and at ν = 0, of ν = ½ on a
+///     rigid body or of two bodies of one material.
+/// estimated_friction : float, optional
+///     The same of any constant ν, as an estimate: the displacement of a rough surface of ν = ½ is off by 1.7 % in the median of 12.
+/// sheared_by : as the load of `follow`, optional
+///     What acts along the surface in all steps: forces, approaches as displacements, springs.
 ///
 /// >>> contact = StatesContact(ElasticStates.sphere(10e-3), Material(Rheology.maxwell(1e6, 1.0)))
 /// >>> report = contact.step(0.0, Load.force(1.0))
@@ -51,7 +59,8 @@ impl StatesContact {
 #[pymethods]
 impl StatesContact {
     #[new]
-    #[pyo3(signature = (states, material, *, temperature=None, linear_steps=false, merge_error=None, exact_states=false))]
+    #[pyo3(signature = (states, material, *, temperature=None, linear_steps=false, merge_error=None, exact_states=false, friction=None, estimated_friction=None, sheared_by=None))]
+    #[allow(clippy::too_many_arguments)]
     fn new(
         py: Python<'_>,
         states: Bound<'_, ElasticStates>,
@@ -60,6 +69,9 @@ impl StatesContact {
         linear_steps: bool,
         merge_error: Option<f64>,
         exact_states: bool,
+        friction: Option<f64>,
+        estimated_friction: Option<f64>,
+        sheared_by: Option<Bound<'_, PyAny>>,
     ) -> PyResult<StatesContact> {
         let mut contact = st::StatesContact::new(&states.get().states, &material.get().material).or_raise()?;
         if let Some(temperature) = &temperature {
@@ -74,11 +86,16 @@ impl StatesContact {
         if exact_states {
             contact = contact.with_exact_states().or_raise()?;
         }
+        let sheared_by = sheared_by.map(|load| LoadHistory::any(&load)).transpose()?;
+        contact = rubbing(contact, friction, estimated_friction, sheared_by.as_ref())?;
         let keywords = dict! { py;
             "temperature": temperature,
             "linear_steps": linear_steps,
             "merge_error": merge_error,
             "exact_states": exact_states,
+            "friction": friction,
+            "estimated_friction": estimated_friction,
+            "sheared_by": sheared_by,
         };
         let recipe = Recipe::new(py, "", (states, material))?.with_keywords(Some(&keywords))?;
         Ok(StatesContact::of(contact, recipe))
@@ -161,7 +178,7 @@ getters! {by get StatesContact, of:
 }
 
 impl StatesContact {
-    fn cells(&self) -> PyResult<Vec<usize>> {
+    pub fn cells(&self) -> PyResult<Vec<usize>> {
         let states = self.get()?.states();
         Ok(states.grid().map_or_else(Vec::new, |grid| grid.cells().to_vec()))
     }

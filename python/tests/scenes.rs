@@ -1,5 +1,8 @@
 //! Random scenes, and the bits of their states: `tests/test_scenes.py` computes the same scenes in Python.
 
+#[path = "more_scenes.rs"]
+mod more_scenes;
+
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
@@ -13,6 +16,10 @@ const FITTED: RangeInclusive<f64> = 1e-4..=1e2;
 struct Draw(u64);
 
 impl Draw {
+    fn of_seed(seed: u64) -> Draw {
+        Draw(0x9E37_79B9_7F4A_7C15 ^ (seed + 1).wrapping_mul(0xD134_2543_DE82_EF95))
+    }
+
     fn next(&mut self) -> u64 {
         self.0 ^= self.0 >> 12;
         self.0 ^= self.0 << 25;
@@ -65,7 +72,7 @@ fn rheology(draw: &mut Draw) -> viscocontact::Result<Arc<dyn Rheology>> {
 }
 
 fn scene(seed: u64) -> viscocontact::Result<ViscoelasticContact> {
-    let mut draw = Draw(0x9E37_79B9_7F4A_7C15 ^ (seed + 1).wrapping_mul(0xD134_2543_DE82_EF95));
+    let mut draw = Draw::of_seed(seed);
     let cells = [12 + draw.below(13), 12 + draw.below(13)];
     let lengths = [draw.within(3e-3, 5e-3), draw.within(3e-3, 5e-3)];
     let (grid, shape, rheology) = (Grid::new(cells, lengths)?, shape(&mut draw)?, rheology(&mut draw)?);
@@ -99,7 +106,6 @@ fn scene(seed: u64) -> viscocontact::Result<ViscoelasticContact> {
     Ok(contact)
 }
 
-/// A line for each scene: its state, bit by bit, or its error.
 /// Time of a step of a ball on `n`² cells, the least of rounds of so many steps [s]: `tests/figures.py` measures the same in Python.
 fn time_of_a_step(n: usize, steps: u32, rounds: u32) -> viscocontact::Result<f64> {
     let builder = ViscoelasticContact::builder(Grid::square(n, 4e-3)?).geometry(&Sphere::new(10e-3)?);
@@ -116,6 +122,12 @@ fn time_of_a_step(n: usize, steps: u32, rounds: u32) -> viscocontact::Result<f64
     Ok(least)
 }
 
+/// All bits of some numbers.
+fn mixed<'a>(numbers: impl IntoIterator<Item = &'a f64>) -> u64 {
+    numbers.into_iter().fold(0u64, |mixed, value| mixed.rotate_left(5) ^ value.to_bits())
+}
+
+/// A line for each scene: its state, bit by bit, or its error.
 fn main() {
     if std::env::args().nth(1).as_deref() == Some("steps") {
         for (n, steps, rounds) in [(16, 100, 400), (64, 10, 400), (256, 2, 200)] {
@@ -123,12 +135,21 @@ fn main() {
         }
         return;
     }
-    let count = std::env::args().nth(1).and_then(|count| count.parse().ok()).unwrap_or(300);
+    let count = |place| std::env::args().nth(place).and_then(|count| count.parse().ok());
+    if let Some(scene) = std::env::args().nth(1).and_then(|kind| more_scenes::scene_of(&kind)) {
+        for seed in 0..count(2).unwrap_or(100) {
+            match scene(&mut Draw::of_seed(seed)) {
+                Ok(numbers) => println!("{seed} {:016x} {}", mixed(&numbers), numbers.len()),
+                Err(error) => println!("{seed} {error}"),
+            }
+        }
+        return;
+    }
+    let count = count(1).unwrap_or(300);
     for seed in 0..count {
         match scene(seed) {
             Ok(contact) => {
-                let fields = contact.pressure().iter().chain(contact.fields().displacement());
-                let mixed = fields.fold(0u64, |mixed, value| mixed.rotate_left(5) ^ value.to_bits());
+                let mixed = mixed(contact.pressure().iter().chain(contact.fields().displacement()));
                 let [time, force, approach] = [contact.time(), contact.force(), contact.approach()].map(f64::to_bits);
                 println!("{seed} {time:016x} {force:016x} {approach:016x} {mixed:016x}");
             }

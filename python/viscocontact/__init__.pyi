@@ -1,4 +1,4 @@
-"""Types of the package. The docstrings are those of the classes: help(viscocontact.Shape)."""
+# Types of the package. The docstrings are those of the classes: help(viscocontact.Shape)
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import builtins
 import os
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, ClassVar, Literal, SupportsFloat, SupportsIndex, TypeAlias, TypedDict, final, overload
+from typing import Any, ClassVar, Literal, SupportsFloat, SupportsIndex, TypeAlias, TypedDict, Union, final, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -25,11 +25,11 @@ _Tilts: TypeAlias = Sequence[float | None]
 _Quantity: TypeAlias = Literal["von_mises", "tresca", "mean", "principal_1", "principal_3"]
 _Field: TypeAlias = Literal["pressure", "gap", "displacement", "traction"]
 _StrPath: TypeAlias = str | os.PathLike[str]
-# a list of lists is no gap: an array is
-_GeometryLike: TypeAlias = Shape | NDArray[Any] | Sequence[Shape]
-_Showing: TypeAlias = ViscoelasticContact | ElasticContact | SteadySliding | Fields
-_LoadLike: TypeAlias = Load | LoadHistory | Sequence[tuple[float, Load]] | Callable[[float], Load]
-_TimesLike: TypeAlias = Times | ArrayLike
+# in a form that pdoc can evaluate; a list of lists is no gap: an array is
+_GeometryLike: TypeAlias = Union["Shape", NDArray[Any], Sequence["Shape"]]
+_Showing: TypeAlias = Union["ViscoelasticContact", "ElasticContact", "SteadySliding", "Fields"]
+_LoadLike: TypeAlias = Union["Load", "LoadHistory", Sequence[tuple[float, "Load"]], Callable[[float], "Load"]]
+_TimesLike: TypeAlias = Union["Times", ArrayLike]
 _ModelLike: TypeAlias = (
     str | tuple[Literal["prony"], int] | tuple[Literal["power_law"], float] | tuple[Literal["power_law_solid"], float]
 )
@@ -75,6 +75,8 @@ __all__ = [
     "Fields",
     "Fit",
     "FrameSeries",
+    "FrictionContact",
+    "FrictionLimit",
     "Grid",
     "GrowingSphere",
     "HeightMap",
@@ -95,6 +97,8 @@ __all__ = [
     "Run",
     "Sample",
     "Shape",
+    "ShearLoad",
+    "Slides",
     "SlidingReport",
     "SlidingTable",
     "Snapshot",
@@ -124,6 +128,10 @@ __all__ = [
 
 class Cancelled(Exception): ...
 class ConvergenceError(RuntimeError): ...
+
+class Slides(ValueError):
+    over_limit: float
+    direction: tuple[float, float, float] | None
 
 @final
 class Attraction:
@@ -241,6 +249,7 @@ class ElasticContact:
         **options: Unpack[_Settings],
     ) -> ElasticContact: ...
     def solve(self, load: Load | Sequence[Load]) -> dict[str, Any]: ...
+    def approach_gradient(self) -> _Array: ...
     def set_surface(self, displacement: Any) -> None: ...
     @property
     def modulus(self) -> float: ...
@@ -1071,8 +1080,28 @@ class StatesContact:
         linear_steps: bool = False,
         merge_error: float | None = None,
         exact_states: bool = False,
+        friction: float | None = None,
+        estimated_friction: float | None = None,
+        sheared_by: _LoadLike | None = None,
     ) -> StatesContact: ...
     def step(self, dt: float, load: Load) -> StepReport: ...
+    def step_sheared(self, dt: float, load: Load, along: Load) -> StepReport: ...
+    @property
+    def lateral_force(self) -> float: ...
+    @property
+    def lateral_displacement(self) -> float: ...
+    @property
+    def slid(self) -> float: ...
+    @property
+    def stick_level(self) -> float: ...
+    @property
+    def stick_area(self) -> float: ...
+    @property
+    def lateral_work(self) -> dict[str, float]: ...
+    @property
+    def shear(self) -> _Array: ...
+    def shear_tractions(self) -> _Array: ...
+    def approach_gradient(self) -> _Array: ...
     def follow(
         self,
         load: _LoadLike,
@@ -1434,7 +1463,7 @@ class ViscoelasticContact:
     ) -> tuple[StepReport, tuple[list[float], list[float], float]]: ...
     def follow(
         self,
-        load: _LoadLike,
+        load: _LoadLike | Sequence[_LoadLike],
         until: float,
         *,
         tolerance: float | None = None,
@@ -1577,6 +1606,61 @@ class HeightMap(Shape):
     def plot(self, what: str | None = None, *, ax: Any = None, **style: Any) -> Any: ...
     @staticmethod
     def from_topography(topography: Any) -> HeightMap: ...
+
+@final
+class FrictionContact:
+    def __new__(
+        cls,
+        grid: Grid,
+        geometry: _GeometryLike,
+        material: Material,
+        friction: float | FrictionLimit,
+        **options: Any,
+    ) -> FrictionContact: ...
+    def step(self, dt: float, load: Load, shear: ShearLoad) -> dict[str, Any]: ...
+    @property
+    def normal(self) -> Fields: ...
+    @property
+    def traction(self) -> _Array: ...
+    @property
+    def slip(self) -> _Array: ...
+    @property
+    def sticks(self) -> NDArray[np.bool_]: ...
+    @property
+    def work(self) -> dict[str, float]: ...
+    @property
+    def time(self) -> float: ...
+    @property
+    def motion(self) -> tuple[float, float, float]: ...
+    @property
+    def force(self) -> tuple[float, float, float]: ...
+    @property
+    def stick_cells(self) -> int: ...
+    def __copy__(self) -> FrictionContact: ...
+    def __deepcopy__(self, _memo: object, /) -> FrictionContact: ...
+
+@final
+class FrictionLimit:
+    @staticmethod
+    def coulomb(coefficient: float) -> FrictionLimit: ...
+    @staticmethod
+    def tresca(strength: float) -> FrictionLimit: ...
+    @staticmethod
+    def lesser(one: FrictionLimit, other: FrictionLimit) -> FrictionLimit: ...
+    @staticmethod
+    def function(limit: Callable[[float], float]) -> FrictionLimit: ...
+    def limit(self, pressure: float) -> float: ...
+
+@final
+class ShearLoad:
+    def __new__(
+        cls,
+        force: _Tilts | None = None,
+        motion: _Tilts | None = None,
+        *,
+        torque: float | None = None,
+        angle: float | None = None,
+    ) -> ShearLoad: ...
 
 def memory(grid: Grid, geometry: _GeometryLike, material: Material, **options: Unpack[_Options]) -> dict[str, Any]: ...
 def hertz(radius: float, modulus: float, force: float) -> dict[str, Any]: ...

@@ -1,6 +1,7 @@
 //! A contact with friction, step by step.
 
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 use crate::contact::{Builder, Snapshot, StepError, StepReport, TimeRule, ViscoelasticContact};
 use crate::error::{Error, FrictionError, Result, Special, UserError};
@@ -163,15 +164,24 @@ impl FrictionContact {
     /// As [`ViscoelasticContact::step`]; [`FrictionError::NotConverged`]; if a number is not finite, or the limit returns
     /// a negative number or none. The contact is then as it was.
     pub fn step(&mut self, dt: f64, load: Load, shear: ShearLoad) -> Result<Outcome> {
+        self.step_unless(&AtomicBool::new(false), dt, load, shear)
+    }
+
+    /// [`FrictionContact::step`], ended within an iteration where another thread sets `cancelled`.
+    ///
+    /// # Errors
+    /// As [`FrictionContact::step`], and [`Error::Cancelled`].
+    pub fn step_unless(&mut self, cancelled: &AtomicBool, dt: f64, load: Load, shear: ShearLoad) -> Result<Outcome> {
         shear.validate()?;
         self.normal.snapshot_into(&mut self.start);
         self.normal.fields().gap_into(&mut self.step.gap)?;
         let (approach, reduced) = (self.placed(), self.normal.reduced_time());
         let is_first = self.normal.contact_cells() == 0;
-        let normal = self.normal.step(dt, load)?;
+        let normal = self.normal.step_unless(cancelled, dt, load)?;
         let change = self.placed() - approach;
         let met = |k: [f64; 2]| change.at(k);
         let outcome = self.shear_to(
+            cancelled,
             if dt == 0.0 { 0.0 } else { self.normal.reduced_time() - reduced },
             shear,
             normal,
@@ -199,6 +209,7 @@ impl FrictionContact {
     /// nearer at a place.
     fn shear_to(
         &mut self,
+        cancelled: &AtomicBool,
         dt: f64,
         shear: ShearLoad,
         normal: StepReport,
@@ -230,8 +241,11 @@ impl FrictionContact {
         }
         take_motion(drift, 0..cells, entered, places, given);
         let side = self.response.self_influence();
-        let problem = Problem { side, compliance, bound, drift, places, entered, wanted };
+        let problem = Problem { side, compliance, bound, drift, places, entered, wanted, cancelled };
         let (factor, direction) = problem.load_factor();
+        if problem.is_cancelled() {
+            return Err(Error::Cancelled { what: "a step" });
+        }
         if factor < 1.0 - ROUNDING {
             return Ok(Outcome::Slides { direction, over_limit: 1.0 / factor });
         }
@@ -241,6 +255,9 @@ impl FrictionContact {
         let found = trial.find(&problem, kernel, tolerance, work);
         let (iterations, residual) = (found.iterations, found.residual);
         if !found.is_solved {
+            if problem.is_cancelled() {
+                return Err(Error::Cancelled { what: "a step" });
+            }
             return Err(FrictionError::NotConverged { time, iterations, residual, tolerance }.into());
         }
         let mut change = given;

@@ -76,12 +76,13 @@ impl Solution {
         self.begin(problem);
         let mut found = self.solve(problem, kernel, tolerance, work);
         let mut iterations = found.iterations;
-        if !found.is_solved {
+        let goes_on = |found: Outcome| !found.is_solved && !problem.is_cancelled();
+        if goes_on(found) {
             self.begin_cold(problem);
             found = self.solve(problem, kernel, tolerance, work);
             iterations += found.iterations;
         }
-        if !found.is_solved {
+        if goes_on(found) {
             found = self.find_by_motion(problem, kernel, tolerance, work);
             iterations += found.iterations;
         }
@@ -122,7 +123,7 @@ impl Solution {
             let residual = self.judge(problem, work) / scale;
             outcome =
                 Outcome { iterations: iteration, residual, is_solved: residual <= tolerance && balance <= tolerance };
-            if outcome.is_solved || iteration == MOST_STEPS || !residual.is_finite() {
+            if outcome.is_solved || iteration == MOST_STEPS || !residual.is_finite() || problem.is_cancelled() {
                 break;
             }
             if iteration > PATIENCE && iteration % 4 == 0 {
@@ -240,7 +241,7 @@ impl Solution {
             kernel.precondition(residual, preconditioned, &self.cells, normals);
             modes.project(preconditioned);
             let next = inner(residual, preconditioned);
-            if next <= 0.0 || next.is_nan() {
+            if next <= 0.0 || next.is_nan() || problem.is_cancelled() {
                 break;
             }
             direction.iter_mut().zip(&*preconditioned).for_each(|(p, z)| *p = z + next / size * *p);

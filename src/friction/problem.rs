@@ -9,6 +9,8 @@
 //! against τ where they slip. a is the share of the step for which a cell was in contact (the entry rule): of what
 //! joins, only the motion after it was met is slip.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use crate::linalg;
 
 /// What a step asks along the surface.
@@ -28,6 +30,8 @@ pub(super) struct Problem<'a> {
     pub(super) entered: &'a [f64],
     /// Force over the area of a cell along each component whose force is prescribed.
     pub(super) wanted: [Option<f64>; 3],
+    /// Set by another thread that wants the search to end.
+    pub(super) cancelled: &'a AtomicBool,
 }
 
 /// A motion of 1 along a component of the load, at a place.
@@ -40,6 +44,10 @@ pub(super) fn rigid(component: usize, place: [f64; 2]) -> [f64; 2] {
 }
 
 impl Problem<'_> {
+    pub(super) fn is_cancelled(&self) -> bool {
+        self.cancelled.load(Ordering::Relaxed)
+    }
+
     pub(super) fn cells(&self) -> usize {
         self.bound.len()
     }

@@ -41,7 +41,8 @@ impl Problem<'_> {
     }
 
     /// How many times the prescribed forces may grow before the contact slides, and the rigid motion in which it then
-    /// does (shifts and twist, of the largest component 1). A motion that is prescribed holds the body.
+    /// does (shifts and twist, of the largest component 1). A motion that is prescribed holds the body. Of no meaning where
+    /// the step is cancelled.
     pub(super) fn load_factor(&self) -> (f64, [f64; 3]) {
         let (wanted, is_driven) =
             (self.wanted.map(|wanted| wanted.unwrap_or(0.0)), self.wanted.map(|wanted| wanted.is_some()));
@@ -87,7 +88,7 @@ impl Problem<'_> {
                     length *= 0.5;
                 }
                 w = moved(length);
-                if gain.abs() <= 1e-12 * value {
+                if gain.abs() <= 1e-12 * value || self.is_cancelled() {
                     break;
                 }
             }
@@ -96,7 +97,7 @@ impl Problem<'_> {
                 best = (value, w);
             }
             rounding *= 0.25;
-            if rounding < 1e-12 * best.0 {
+            if rounding < 1e-12 * best.0 || self.is_cancelled() {
                 break;
             }
         }

@@ -1,5 +1,7 @@
 //! Gradients of creeping contacts with respect to their shape.
 
+use std::sync::atomic::AtomicBool;
+
 use crate::error::Result;
 use crate::load::Load;
 use crate::states::contact::StatesContact;
@@ -37,6 +39,15 @@ impl StatesContact {
     /// a table; as [`ElasticContact::solve`](crate::elastic::ElasticContact::solve) and
     /// [`Fields::approach_gradient`](crate::fields::Fields::approach_gradient).
     pub fn approach_gradient(&self) -> Result<Vec<f64>> {
+        self.approach_gradient_unless(&AtomicBool::new(false))
+    }
+
+    /// [`StatesContact::approach_gradient`], ended within an iteration of its elastic contacts where another thread sets
+    /// `cancelled`.
+    ///
+    /// # Errors
+    /// As [`StatesContact::approach_gradient`], and [`Error::Cancelled`](crate::Error::Cancelled).
+    pub fn approach_gradient_unless(&self, cancelled: &AtomicBool) -> Result<Vec<f64>> {
         let (states, mut elastic) = (self.states(), self.states().elastic_contact()?);
         let mut sum = vec![0.0; elastic.fields().grid().len()];
         if self.is_separated() {
@@ -48,7 +59,7 @@ impl StatesContact {
             if step == 0.0 {
                 continue;
             }
-            elastic.solve(Load::Force { normal: level, tilt: states.tilt })?;
+            elastic.solve_unless(cancelled, Load::Force { normal: level, tilt: states.tilt })?;
             let gradient = elastic.fields().load_point_gradient(free_points(states.tilt))?;
             sum.iter_mut().zip(gradient).for_each(|(sum, q)| *sum += step * q);
         }

@@ -1,6 +1,8 @@
 //! Gradients with respect to the shape: of contacts on elastic states against dense steps that are differentiated as they are
 //! taken, of elastic contacts against differences.
 
+use std::sync::atomic::AtomicBool;
+
 use viscocontact::prelude::*;
 use viscocontact::states::{Reach, StatesContact, Sweep};
 
@@ -110,4 +112,18 @@ fn gradients_are_differences_of_elastic_contacts() {
     }
     println!("off differences of the force by {worst:.1e}");
     assert!(worst < 1e-6);
+}
+
+#[test]
+fn a_gradient_ends_where_it_is_cancelled() {
+    let states = Sweep::new(Grid::square(16, 4.0e-3).unwrap(), &Sphere::new(10.0e-3).unwrap())
+        .run(Reach::Level(3.0e-7))
+        .unwrap();
+    let rubber = Material::incompressible(Zener::with_time(1.0e6, 1.0e6, 1.0).unwrap());
+    let mut contact = StatesContact::new(&states, &rubber).unwrap();
+    contact.step(0.0, Load::force(0.5)).unwrap();
+    let error = contact.approach_gradient_unless(&AtomicBool::new(true)).unwrap_err();
+    assert!(matches!(error, Error::Cancelled { .. }), "{error}");
+    let plain = contact.approach_gradient().unwrap();
+    assert_eq!(contact.approach_gradient_unless(&AtomicBool::new(false)).unwrap(), plain);
 }

@@ -1,7 +1,10 @@
 //! Friction in space against published and closed-form results.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use viscocontact::analytic::{CattaneoMindlin, Hertz, LubkinTorsion};
-use viscocontact::friction::{Coulomb, FrictionContact, FrictionError, Outcome, ShearLoad};
+use viscocontact::friction::{Coulomb, FrictionContact, FrictionError, FrictionLimit, Outcome, ShearLoad};
 use viscocontact::prelude::*;
 use viscocontact::rheology::Elastic;
 use viscocontact::states::{ElasticStates, StatesContact};
@@ -255,4 +258,45 @@ fn bodies_that_friction_does_not_cover_are_refused() {
     assert!(matches!(outcome, Outcome::Slides { over_limit, .. } if (over_limit - 1.2).abs() < 1e-9), "{outcome:?}");
     assert_eq!(contact.normal().force(), 0.0);
     assert_eq!(contact.motion(), [0.0; 3]);
+}
+
+/// Coulomb's law with f = 1/2 that cancels the step once it is asked, while it is armed: the normal contact is solved then.
+#[derive(Debug)]
+struct Cancelling {
+    armed: Arc<AtomicBool>,
+    cancelled: Arc<AtomicBool>,
+}
+
+impl FrictionLimit for Cancelling {
+    fn limit(&self, pressure: f64) -> f64 {
+        self.cancelled.fetch_or(self.armed.load(Ordering::Relaxed), Ordering::Relaxed);
+        0.5 * pressure
+    }
+}
+
+#[test]
+fn a_step_that_is_cancelled_changes_nothing() {
+    let grid = Grid::square(16, 1.0e-3).unwrap();
+    let rubber = Material::incompressible(Zener::with_time(1.0e6, 1.0e6, 1.0).unwrap());
+    let ball = ViscoelasticContact::builder(grid).geometry(&Sphere::new(1.0e-3).unwrap()).material(rubber);
+    let [armed, cancelled] = [(); 2].map(|()| Arc::new(AtomicBool::new(false)));
+    let law = Cancelling { armed: Arc::clone(&armed), cancelled: Arc::clone(&cancelled) };
+    let mut contact = FrictionContact::new(ball, law).unwrap();
+    let (load, shear) = (Load::force(0.1), ShearLoad::force([0.03, 0.01]).with_torque(1.0e-6));
+    holds(contact.step(0.0, load, ShearLoad::force([0.0; 2])).unwrap());
+    let mut other = contact.clone();
+    armed.store(true, Ordering::Relaxed);
+    for _ in 0..2 {
+        // at first in the search along the surface, then in the normal contact
+        let error = contact.step_unless(&cancelled, 0.5, load, shear).unwrap_err();
+        assert!(matches!(error, Error::Cancelled { .. }), "{error}");
+        assert_eq!([contact.normal().time(), contact.force()[0]], [0.0; 2]);
+    }
+    armed.store(false, Ordering::Relaxed);
+    cancelled.store(false, Ordering::Relaxed);
+    for contact in [&mut contact, &mut other] {
+        holds(contact.step_unless(&cancelled, 0.5, load, shear).unwrap());
+    }
+    assert_eq!(contact.traction(), other.traction());
+    assert_eq!(contact.motion(), other.motion());
 }
