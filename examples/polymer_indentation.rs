@@ -131,7 +131,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     chart.save(args.output.join("contact_radius.png"))?;
 
     let title = format!("{}: shape of the pressure while the contact grows", published.name);
-    let mut chart = Chart::new(&title, "x1 / contact radius", "pressure / greatest pressure", Legend::LowerLeft);
+    let mut chart = Chart::new(&title, "x1 / contact radius", "pressure / maximum pressure", Legend::LowerLeft);
     let profiles = &runs[0].profiles;
     let history = &runs[0].history;
     let run_at = |time: f64| history[history.partition_point(|[t, ..]| *t < 0.999 * time).min(history.len() - 1)];

@@ -231,7 +231,7 @@ fn named_jumps_are_followed_however_late() {
         late += u32::from(jump > 1e7);
     }
     println!(
-        "{late} jumps after 1e7 s; greatest error over the tolerance {worst:.2}, over the one reported {unresolved:.2}"
+        "{late} jumps after 1e7 s; maximum error over the tolerance {worst:.2}, over the one reported {unresolved:.2}"
     );
     assert!(late > 3 && worst < 2.0 && unresolved < 4.0, "{late} {worst} {unresolved}");
 }
