@@ -143,7 +143,8 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         let shape = |&(x, p): &(f64, f64)| (x / radius, p / most);
         // the last cells are in contact in part
         let shape = inside.iter().map(shape).filter(|(x, _)| x.abs() < 0.97);
-        shapes.push((*time, shape.collect()));
+        // at the rim the pressure vanishes
+        shapes.push((*time, [(-1.0, 0.0)].into_iter().chain(shape).chain([(1.0, 0.0)]).collect()));
     }
     chart.add_family(Quantity::new("time", "s"), Style::Line, shapes);
     chart.save(args.output.join("profiles.png"))?;
