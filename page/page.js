@@ -3,7 +3,7 @@
 import { curves, map, section } from "./draw.js";
 
 // beside the page where it is hosted, in the folder of the build where it is served from the repository
-const PLACES = ["viscocontact_page.wasm", "../target/wasm32-unknown-unknown/release/viscocontact_page.wasm"];
+const PLACES = ["viscocontact_page.wasm", "../target/wasm32-unknown-unknown/page/viscocontact_page.wasm"];
 const BUDGET_MS = 12;
 const element = (id) => document.getElementById(id);
 

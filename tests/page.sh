@@ -13,6 +13,6 @@ fi
 
 folder=${CARGO_TARGET_DIR:-target}
 mkdir -p "$folder/page"
-command cargo build --quiet --release --package viscocontact-page --target $target
+command cargo build --quiet --profile page --package viscocontact-page --target $target
 command cargo run --quiet --release --package viscocontact-page --example values >"$folder/page/values.json"
-node page/browser.mjs "$folder/page/values.json" "$folder/$target/release/viscocontact_page.wasm" "$folder/page" "$browser"
+node page/browser.mjs "$folder/page/values.json" "$folder/$target/page/viscocontact_page.wasm" "$folder/page" "$browser"
