@@ -66,7 +66,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let kernel = InfluenceKernel::periodic(&grid)?;
 
     let began = Instant::now();
-    let sweep = Sweep::new(grid.clone(), &surface).kernel(kernel.clone()).accuracy(1e-3);
+    let sweep = Sweep::new(grid.clone(), &surface).kernel(kernel.clone()).accuracy(1e-4);
     let states = sweep.run(Reach::Level(1.2 * FORCE * COMPLIANCE))?;
     let swept = began.elapsed();
     println!("{cells}² cells: {} elastic states in {:.2} s", states.states().len(), swept.as_secs_f64());
@@ -82,12 +82,18 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let mut curves = Vec::new();
     for &exponent in &exponents {
         let mut contact = StatesContact::new(&states, &body(exponent)?)?;
-        let mut run = contact.follow(&history, Stepping::adaptive(1e-3), TIMES[2]);
+        // between long steps too, so that lines are smooth and begin and end where they should
+        let drawn = (0..=200).map(|k| TIMES[0] * (TIMES[2] / TIMES[0]).powf(f64::from(k) / 200.0));
+        let drawn = drawn.map(|time| time.min(TIMES[2])).collect::<Vec<_>>();
+        let mut run = contact.follow(&history, Stepping::adaptive(1e-4), TIMES[2]).sample_at(drawn)?;
         let mut points = Vec::new();
-        while let Some(report) = run.next_step()? {
+        while run.next_step()?.is_some() {
             steps += 1;
-            if report.time >= TIMES[0] {
-                points.push((report.time, share(run.contact().contact_area())));
+            for sample in run.samples() {
+                let sample = sample?;
+                if sample.report().time >= TIMES[0] {
+                    points.push((sample.report().time, share(sample.contact().contact_area())));
+                }
             }
         }
         curves.push((exponent, points));
@@ -106,7 +112,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let builder = ViscoelasticContact::builder(grid).geometry(&surface).material(body(exponent)?).kernel(kernel);
     let mut contact = builder.build()?;
     let (began, mut steps) = (Instant::now(), 0);
-    let mut follow = contact.follow(&history, Stepping::adaptive(1e-3), TIMES[2]);
+    let mut follow = contact.follow(&history, Stepping::adaptive(1e-4), TIMES[2]);
     let mut points = Vec::new();
     while let Some(report) = follow.next_step()? {
         steps += 1;

@@ -122,7 +122,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     progress.finish_and_clear();
     table.flush()?;
     println!("{}² cells, {count} steps, {:.2} convolution equivalents a step", args.cells, work / f64::from(count));
-    println!("greatest error of the approach {:.1e}, of the contact radius {:.1e}", worst[0], worst[1]);
+    println!("maximum error of the approach {:.1e}, of the contact radius {:.1e}", worst[0], worst[1]);
 
     let [computed, exact] = loop_points;
     let mut chart =

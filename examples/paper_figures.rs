@@ -40,7 +40,8 @@ fn main() {
     support::finish(run(&Args::parse()));
 }
 
-type Drawn = Result<(Picture, Vec<Merit>), Box<dyn Error>>;
+/// Pictures, each with the end of its name, and figures of merit.
+type Drawn = Result<(Vec<(&'static str, Picture)>, Vec<Merit>), Box<dyn Error>>;
 
 fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     fs::create_dir_all(&args.output)?;
@@ -49,7 +50,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let mut merits = Vec::new();
     let few = figures_in_few_steps(cells)?;
     for figure in 2..=6 {
-        let (mut picture, own) = match figure {
+        let (mut pictures, own) = match figure {
             2 => eccentric_punch(cells),
             3 => opening(cells),
             6 => steps_in_time(cells),
@@ -57,9 +58,11 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         }?;
         if figure == 4 || figure == 5 {
             let few: Vec<&FewSteps> = few.iter().filter(|few| few.figure == figure).collect();
-            picture = Picture::beside(&[picture, few_steps(&few, cells)?])?;
+            pictures.push(("_few_steps", few_steps(&few, cells)?));
         }
-        picture.save(args.output.join(format!("paper_fig{figure}.png")))?;
+        for (end, picture) in pictures {
+            picture.save(args.output.join(format!("paper_fig{figure}{end}.png")))?;
+        }
         merits.extend(own);
         progress.inc(1);
     }
@@ -117,7 +120,7 @@ fn eccentric_punch(cells: usize) -> Drawn {
         let dots = dots.into_iter().filter(|(x, _)| x.abs() < 0.98).collect();
         chart.add(if e == 0.0 { "computed (dots)" } else { "" }, color, Style::Dots, dots);
     }
-    Ok((chart.draw()?, merits))
+    Ok((vec![("", chart.draw()?)], merits))
 }
 
 /// Figure 3: pressures of the open contact, and its area and the tilt over the eccentricity.
@@ -154,7 +157,7 @@ fn opening(cells: usize) -> Drawn {
         chart.add(&names[0], COLORS[0], Style::Dots, curve);
         chart.add(&names[1], COLORS[1], Style::Dots, finer);
     }
-    Ok((Picture::beside(&[profiles.draw()?, areas.draw()?, tilts.draw()?])?, merits))
+    Ok((vec![("", profiles.draw()?), ("_area", areas.draw()?), ("_tilt", tilts.draw()?)], merits))
 }
 
 /// The radius of contact a_H and the greatest pressure p_H when the load has just been applied: the paper's units.
@@ -182,12 +185,12 @@ fn pressure_history(figure: u32, cells: usize) -> Drawn {
     let mut chart = Chart::new(title, "r / a_H", "p / p_H", Legend::UpperRight);
     for ((dots, merit), color) in dots.into_iter().zip(&merits).zip(COLORS) {
         let line = exact_profile(&exact, merit.of * scene.tau, units);
-        chart.add(format!("t = {} τ, Table 1", merit.of), color, Style::Line, line);
+        chart.add(format!("t = {} τ, closed form", merit.of), color, Style::Line, line);
         let half = dots.into_iter().filter(|&(x, p)| x > 0.0 && p > 0.0).collect::<Vec<_>>();
         let dots = thinned(half.into_iter().map(|(x, p)| (x / units[0], p / units[1])));
         chart.add(if merit.of == 0.0 { "computed (dots)" } else { "" }, color, Style::Dots, dots);
     }
-    Ok((chart.draw()?, merits))
+    Ok((vec![("", chart.draw()?)], merits))
 }
 
 /// Figure 6: profiles at 2τ for several numbers of steps, by the paper's rule and by the default one.
@@ -216,11 +219,12 @@ fn steps_in_time(cells: usize) -> Drawn {
         let time = 2.0 * scene.tau;
         let radii = (0..36).map(|k| 0.04 * f64::from(k)).chain([exact.contact_radius(time) / units[0]]);
         let exact = radii.map(|r| (r, exact.pressure(r * units[0], time) / units[1]));
-        chart.add("Table 1 (dots)", Color::BLACK, Style::Dots, exact.collect());
+        chart.add("closed form (dots)", Color::BLACK, Style::Dots, exact.collect());
         chart.draw()
     };
-    let panels = [panel(&studies[0], "the paper's rule")?, panel(&studies[1], "the default rule")?];
-    Ok((Picture::beside(&panels)?, studies.iter().flat_map(TimeStudy::orders).collect()))
+    let pictures =
+        vec![("", panel(&studies[0], "the paper's rule")?), ("_default", panel(&studies[1], "the default rule")?)];
+    Ok((pictures, studies.iter().flat_map(TimeStudy::orders).collect()))
 }
 
 /// The scene of Figure 6, and the profile at 2τ: domain, mesh and steps for 1e-2 of it, measured. Writes the table as CSV, and the picture.
@@ -257,6 +261,6 @@ fn few_steps(few: &[&FewSteps], cells: usize) -> Result<Picture> {
         chart.add(name, color, Style::Line, half(pressure));
     }
     let dots = thinned(exact_profile(&exact, 2.0 * scene.tau, units).into_iter());
-    chart.add("Table 1 (dots)", Color::BLACK, Style::Dots, dots);
+    chart.add("closed form (dots)", Color::BLACK, Style::Dots, dots);
     chart.draw()
 }

@@ -131,7 +131,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     chart.save(args.output.join("contact_radius.png"))?;
 
     let title = format!("{}: shape of the pressure while the contact grows", published.name);
-    let mut chart = Chart::new(&title, "x1 / contact radius", "pressure / greatest pressure", Legend::LowerLeft);
+    let mut chart = Chart::new(&title, "x1 / contact radius", "pressure / maximum pressure", Legend::LowerLeft);
     let profiles = &runs[0].profiles;
     let history = &runs[0].history;
     let run_at = |time: f64| history[history.partition_point(|[t, ..]| *t < 0.999 * time).min(history.len() - 1)];
@@ -143,7 +143,8 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         let shape = |&(x, p): &(f64, f64)| (x / radius, p / most);
         // the last cells are in contact in part
         let shape = inside.iter().map(shape).filter(|(x, _)| x.abs() < 0.97);
-        shapes.push((*time, shape.collect()));
+        // at the rim the pressure vanishes
+        shapes.push((*time, [(-1.0, 0.0)].into_iter().chain(shape).chain([(1.0, 0.0)]).collect()));
     }
     chart.add_family(Quantity::new("time", "s"), Style::Line, shapes);
     chart.save(args.output.join("profiles.png"))?;

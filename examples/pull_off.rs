@@ -155,7 +155,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         summary.serialize((speed, greatest, adhesion, theory, path.len() - 1))?;
         progress.suspend(|| {
             println!(
-                "{} (V τ/l = {:.1e}): greatest pull {:.3} mN, apparent work of adhesion {:.2} w (theory {:.2} w), {} steps",
+                "{} (V τ/l = {:.1e}): maximum pull {:.3} mN, apparent work of adhesion {:.2} w (theory {:.2} w), {} steps",
                 measure(speed, "m/s"),
                 speed * args.tau / edge.length(),
                 1e3 * greatest,

@@ -14,7 +14,8 @@ fn main() -> viscocontact::Result<()> {
     contact.step(0.0, Load::force(1.0))?; // Δ = 0: a jump of the load
     for _ in 0..100 {
         let report = contact.step(0.02, Load::force(1.0))?; // hold it
-        println!("{:.2} s  {:.3} mm²", report.time, contact.contact_area() * 1e6);
+        println!("{report}"); // time, force, approach, cost, error in time, warnings
     }
+    println!("{:.3} mm²", contact.contact_area() * 1e6);
     Ok(())
 }

@@ -123,7 +123,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         let pull = path.iter().map(|point| -point[1]).fold(0.0, f64::max);
         progress.suspend(|| {
             println!(
-                "{name}: greatest mean pull {:.2} kPa, lost in the loop {:.2} mJ/m² ({:.2} w)",
+                "{name}: maximum mean pull {:.2} kPa, lost in the loop {:.2} mJ/m² ({:.2} w)",
                 1e-3 * pull,
                 1e3 * lost,
                 lost / args.work

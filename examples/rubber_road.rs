@@ -15,10 +15,11 @@ use std::time::Instant;
 
 use clap::Parser;
 use viscocontact::analytic::PerssonFriction;
-use viscocontact::plot::{COLORS, Chart, Legend, Map, Quantity, Scale, Style, measure};
+use viscocontact::contact::Warnings;
+use viscocontact::plot::{COLORS, Chart, Color, Legend, Map, Quantity, Scale, Style, measure};
 use viscocontact::prelude::*;
 use viscocontact::rheology::{TimeTemperature, library};
-use viscocontact::sliding::{SlidingSweep, SlidingTable};
+use viscocontact::sliding::{SlidingSweep, SlidingTable, SweptState};
 
 /// A rubber slides over a road, at speeds over eight decades.
 #[derive(Parser)]
@@ -129,22 +130,29 @@ fn draw(args: &Args, grid: &Grid, road: &Rough, table: &SlidingTable) -> Result<
         chart("Contact of a rubber on a road", "part of the road in contact", Legend::UpperRight),
     ];
     let area = args.length.powi(2);
-    for (k, states) in table.states().chunk_by(|a, b| a.temperature == b.temperature).enumerate() {
-        let kelvin = TEMPERATURES[k];
+    let mut isotherms: Vec<_> =
+        TEMPERATURES.into_iter().zip(table.states().chunk_by(|a, b| a.temperature == b.temperature)).collect();
+    isotherms.sort_by(|a, b| a.0.total_cmp(&b.0));
+    for (k, (kelvin, states)) in isotherms.into_iter().enumerate() {
         let shift = law.shift_factor(kelvin)?;
-        let found =
-            states.iter().map(|own| (own.report.velocity[0], [own.report.friction(), own.report.contact_area / area]));
+        let is_resolved = |own: &&SweptState| !own.report.warnings.contains(Warnings::FEW_CELLS);
+        let point =
+            |own: &SweptState| (own.report.velocity[0], [own.report.friction(), own.report.contact_area / area]);
+        let (resolved, unresolved): (Vec<_>, Vec<_>) = states.iter().partition(is_resolved);
+        let [found, coarse] = [resolved, unresolved].map(|own| own.into_iter().map(point).collect::<Vec<_>>());
         let theory = (4 * DECADES[0]..=4 * DECADES[1]).map(|decade| {
             let speed = 10f64.powf(0.25 * f64::from(decade));
             let own = PerssonFriction::new(grid, road, modulus, args.pressure, [speed * shift, 0.0], 0.5)?;
             Ok((speed, [own.friction, own.contact_share]))
         });
-        let (found, theory) = (found.collect::<Vec<_>>(), theory.collect::<viscocontact::Result<Vec<_>>>()?);
-        let label = if k == 0 { "lines: Persson's theory" } else { "" };
+        let theory = theory.collect::<viscocontact::Result<Vec<_>>>()?;
         for (which, chart) in charts.iter_mut().enumerate() {
             let of = |all: &[(f64, [f64; 2])]| all.iter().map(|(speed, own)| (*speed, own[which])).collect();
+            // each name once
+            let once = |name: &str| if k == 0 { name.to_owned() } else { String::new() };
+            chart.add(once("contacts fewer than 8 cells across: unresolved"), Color::GREY, Style::Dots, of(&coarse));
+            chart.add(once("lines: Persson's theory"), COLORS[k], Style::Line, of(&theory));
             chart.add(format!("{kelvin} K"), COLORS[k], Style::Dots, of(&found));
-            chart.add(label, COLORS[k], Style::Line, of(&theory));
         }
     }
     charts[0].save(args.output.join("friction.png"))?;

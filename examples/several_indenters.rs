@@ -179,7 +179,7 @@ fn in_turn(args: &Args, scene: &Indenters, material: &Material) -> Result<(), Bo
     let mut four = scene.on(material, 4)?;
     let mut jumps: Vec<(f64, [f64; 3])> = Vec::new();
     let (mut exact_curves, mut dots) = ([const { Vec::new() }; 3], Vec::new());
-    let mut centers = [const { Vec::new() }; TURNS as usize];
+    let mut centers = [const { Vec::new() }; 2];
     let mut before = [0.0; 3];
     let progress = support::progress(u64::from(TURNS));
     for turn in 0..TURNS {
@@ -214,7 +214,9 @@ fn in_turn(args: &Args, scene: &Indenters, material: &Material) -> Result<(), Bo
                 }
             }
             let sphere = four.fields().body(SPHERE).ok_or("the sphere is the last of four bodies")?;
-            centers[turn as usize].push((1e6 * sphere.moment[0] / sphere.force, 1e6 * sphere.moment[1] / sphere.force));
+            for (axis, path) in centers.iter_mut().enumerate() {
+                path.push((time / args.tau, 1e6 * sphere.moment[axis] / sphere.force));
+            }
         }
     }
     table.flush()?;
@@ -224,10 +226,10 @@ fn in_turn(args: &Args, scene: &Indenters, material: &Material) -> Result<(), Bo
     }
     chart.add("computed", COLORS[6], Style::Dots, dots);
     chart.save(args.output.join("turns.png"))?;
-    let mut chart = Chart::new("Centre of pressure of the sphere, six turns", "x1 [µm]", "x2 [µm]", Legend::UpperRight);
-    for (turn, path) in centers.into_iter().enumerate() {
-        let label = if turn < 3 { format!("{} is pressed", NAMES[turn]) } else { String::new() };
-        chart.add(label, COLORS[turn % 3], Style::Line, path);
+    let title = "Centre of pressure of the sphere while the punches are pressed in turn";
+    let mut chart = Chart::new(title, "t / τ", "from the middle of the sphere [µm]", Legend::UpperRight);
+    for (path, (name, color)) in centers.into_iter().zip([("along x1", COLORS[0]), ("along x2", COLORS[1])]) {
+        chart.add(name, color, Style::Line, path);
     }
     Ok(chart.save(args.output.join("sphere.png"))?)
 }

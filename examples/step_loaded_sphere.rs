@@ -284,7 +284,7 @@ impl Run {
             // dense near the rim, where the profile falls like a root
             let radii = (0..=200).map(|k| edge * (1.0 - (1.0 - k as f64 / 200.0).powi(2)));
             let line = radii.map(|r| (r / a, self.exact.pressure(r, profile.time) / p)).collect();
-            chart.add(format!("t = {} τ, Table 1", profile.time / scene.tau), color, Style::Line, line);
+            chart.add(format!("t = {} τ, closed form", profile.time / scene.tau), color, Style::Line, line);
             let stride = profile.points.len().div_ceil(40);
             let dots = profile.points.iter().step_by(stride).filter(|point| point[1] > 0.0);
             let dots = dots.map(|point| (point[0] / a, point[1] / p)).collect();
@@ -297,7 +297,7 @@ impl Run {
         let unit = self.hertz.contact_radius;
         let times = (0..=200).map(|k| scene.duration * k as f64 / 200.0);
         let line = times.map(|t| (t / scene.tau, self.exact.contact_radius(t) / unit)).collect();
-        chart.add(format!("{}, Table 1", scene.name), color, Style::Line, line);
+        chart.add(format!("{}, closed form", scene.name), color, Style::Line, line);
         let states = self.reports.iter().zip(&self.radii).step_by(self.reports.len().div_ceil(34));
         let dots = states.map(|(report, radius)| (report.time / scene.tau, radius / unit)).collect();
         chart.add(format!("{}, computed", scene.name), color, Style::Dots, dots);

@@ -149,7 +149,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
             progress.suspend(|| {
                 let pull = -1e3 * strongest.force();
                 println!(
-                    "{name}, {}: greatest pull {pull:.2} mN, work of separation {:.2} w",
+                    "{name}, {}: maximum pull {pull:.2} mN, work of separation {:.2} w",
                     measure(speed, "m/s"),
                     work / args.work
                 );
@@ -160,7 +160,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
             }
             if [exponents.first(), exponents.last()].contains(&Some(&exponent)) {
                 let mut map = Map::traction(&strongest)?;
-                map.title = format!("{name}, {}: greatest pull", measure(speed, "m/s"));
+                map.title = format!("{name}, {}: maximum pull", measure(speed, "m/s"));
                 map.range = [-args.work / args.range, 0.0];
                 maps.push(map);
             }

@@ -138,7 +138,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     if args.verify {
         let scene = ViscoelasticContact::builder(grid).geometry(&shape).kernel(kernel);
         let difference = best.verify(0, &scene)?.difference;
-        println!("the stepper in space differs by {:.2} % of the greatest force", 100.0 * difference);
+        println!("the stepper in space differs by {:.2} % of the maximum force", 100.0 * difference);
     }
     let summaries: Vec<Summary> = ranked.iter().map(|(fit, ..)| fit.summary()).collect();
     Summary::write_csv(&summaries, File::create(args.output.join("results.csv"))?)?;

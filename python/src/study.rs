@@ -13,7 +13,7 @@ const QUANTITIES: [(&str, Observable); 4] = [
     ("approach", Observable::Approach),
     ("force", Observable::Force),
     ("contact area", Observable::ContactArea),
-    ("greatest pressure", Observable::GreatestPressure),
+    ("maximum pressure", Observable::GreatestPressure),
 ];
 
 /// A convergence study: runs on finer meshes and in shorter steps, until the measured errors of what is asked are below the accuracy. The result is the finest run.
@@ -28,7 +28,7 @@ const QUANTITIES: [(&str, Observable); 4] = [
 /// accuracy : float, default 1e-3
 ///     Of approach and force, relative to their greatest values; in [1e-6, 0.1].
 /// ask : list of str
-///     What else has this accuracy: "contact area", "greatest pressure".
+///     What else has this accuracy: "contact area", "maximum pressure".
 /// quantities : dict of functions, optional
 ///     Quantities of one's own that have it: functions of `Fields` that return a number, by their names.
 /// fields : list of float

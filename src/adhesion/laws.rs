@@ -71,12 +71,12 @@ pub(crate) fn usable(attraction: &dyn Attraction) -> Verdict {
 /// # Errors
 /// The first violation.
 pub fn scales_are_positive(attraction: &dyn Attraction) -> Verdict {
-    let law = "work, range and greatest traction are finite and positive";
+    let law = "work, range and maximum traction are finite and positive";
     let (work, range, greatest) = (attraction.work(), attraction.range(), attraction.traction(0.0));
     for (quantity, value) in [("work of separation", work), ("range", range), ("traction", greatest)] {
         check(law, quantity, 0.0, [value, 0.0], value > 0.0 && value.is_finite())?;
     }
-    let law = "the work is the energy at gap 0, and the range times the greatest traction";
+    let law = "the work is the energy at gap 0, and the range times the maximum traction";
     for expected in [attraction.energy(0.0), range * greatest] {
         check(law, "work of separation", 0.0, [work, expected], (work - expected).abs() <= 1e-12 * work)?;
     }

@@ -57,13 +57,13 @@ impl Scales {
     fn new(work: f64, range: f64) -> Result<Scales> {
         positive("work of separation", work)?;
         length("range of the attraction", range)?;
-        positive("greatest traction of the attraction", work / range)?;
+        positive("maximum traction of the attraction", work / range)?;
         Ok(Scales { work, range })
     }
 
     fn of_traction(work: f64, greatest: f64) -> Result<Scales> {
         positive("work of separation", work)?;
-        positive("greatest traction of the attraction", greatest)?;
+        positive("maximum traction of the attraction", greatest)?;
         Scales::new(work, finite("range of the attraction", work / greatest)?)
     }
 

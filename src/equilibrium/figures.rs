@@ -57,7 +57,7 @@ impl Figures {
     /// error.
     fn of(&self, warning: Warnings, time_error: Option<f64>) -> Option<(&'static str, f64)> {
         let (name, figure) = match warning {
-            Warnings::STEEP => ("greatest slope", self.max_slope),
+            Warnings::STEEP => ("maximum slope", self.max_slope),
             Warnings::DEEP => ("depth over thickness", self.compression),
             Warnings::FEW_CELLS => ("cells across:", self.cells_across),
             Warnings::SHORT_WAVES => ("cells in a wave:", self.cells_in_wave),

@@ -8,7 +8,7 @@ pub enum StatesError {
     /// The pressure of an elastic contact falls somewhere while its load grows, so that its states are no family of
     /// contacts that only grow. [`ViscoelasticContact`](crate::ViscoelasticContact) computes such a scene.
     #[error(
-        "between the levels {} and {} m² the pressure of the elastic contact falls by {} of the greatest pressure \
+        "between the levels {} and {} m² the pressure of the elastic contact falls by {} of the maximum pressure \
         somewhere, where at most {} is rounding: its elastic states do not superpose; step it with \
         ViscoelasticContact",
         rounded(.levels[0], 3), rounded(.levels[1], 3), rounded(*.fall, 3), rounded(*.allowed, 3)

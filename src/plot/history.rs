@@ -38,7 +38,7 @@ impl HistoryColumn {
             HistoryColumn::Approach => ("approach", "m"),
             HistoryColumn::ContactArea => ("contact area", "m²"),
             HistoryColumn::MeanPressure => ("mean pressure", "Pa"),
-            HistoryColumn::MaxPressure => ("greatest pressure", "Pa"),
+            HistoryColumn::MaxPressure => ("maximum pressure", "Pa"),
         };
         Quantity::new(name, unit)
     }

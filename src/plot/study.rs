@@ -22,7 +22,7 @@ impl StudyResult {
     /// # Ok::<(), Error>(())
     /// ```
     pub fn chart(&self) -> Chart {
-        let change = Quantity::from("change from the mesh before, over the greatest value");
+        let change = Quantity::from("change from the mesh before, over the maximum value");
         let mut chart =
             Chart::new("Convergence study", Quantity::from("cells along a side"), change, Legend::LowerLeft);
         chart.scale = Scale::LogLog;

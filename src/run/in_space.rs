@@ -16,6 +16,7 @@ use crate::run::error_budget::ErrorBudget;
 use crate::run::histories::Histories;
 use crate::run::progress::{Progress, Stepping};
 use crate::run::step_control::StepControl;
+use crate::run::track::Track;
 
 impl Contact for ViscoelasticContact {
     fn step_to(&mut self, time: f64, load: Load) -> Result<StepReport> {
@@ -163,7 +164,7 @@ impl ViscoelasticContact {
     ) -> Result<(StepReport, TimeError)> {
         let dt = time - self.time();
         if dt == 0.0 {
-            control.jump();
+            control.anew(Track::jump);
         }
         let tolerance = control.solver_tolerance(&self.scene);
         let step = Step { cancelled: course.cancelled, ..self.request(time, dt, loads, tolerance)? };

@@ -116,8 +116,8 @@ impl RunScale {
         }
         let large_enough = |size: f64| size == 0.0 || size >= LEAST;
         let allowed = "0, or 1e-290 at least, for adaptive steps: choose other units, or Stepping::fixed";
-        within("greatest force of the run", scale.force, large_enough(scale.force), allowed)?;
-        within("greatest depth of the run", scale.depth, large_enough(scale.depth), allowed)?;
+        within("maximum force of the run", scale.force, large_enough(scale.force), allowed)?;
+        within("maximum depth of the run", scale.depth, large_enough(scale.depth), allowed)?;
         if scale.force > 0.0 && compliance > 0.0 {
             scale.depth_over_compliance =
                 resting_depth(&scene.ground, &state.held, body, scale.force * compliance) / compliance;

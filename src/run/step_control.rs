@@ -130,20 +130,19 @@ impl StepControl {
             let (cells, pressure) = (state.held.current.contact_cells, &state.held.current.solution.pressure);
             let is_apart = cells == 0 || scene.ground.bodies > 1 && !state.held.presses(&scene.ground, pressure, body);
             track.is_apart = is_apart && !state.attracts;
+            // a run that begins on bodies that were stepped does not know how their load came: at worst all of it in
+            // the last step
+            if self.next.is_none() && track.corner.is_none() && state.clock.last_dt > 0.0 {
+                track.corner = Some((state.clock.last_dt, track.scale.magnitude(load) / state.clock.last_dt));
+            }
         }
         Ok(())
     }
 
-    /// Starts anew at a jump of the load.
-    pub(super) fn jump(&mut self) {
+    /// Starts anew at a jump of the load, or at a corner at the end of the last step.
+    pub(super) fn anew(&mut self, at: fn(&mut Track)) {
         (self.next, self.last) = (None, 1.0);
-        self.tracks.iter_mut().for_each(Track::jump);
-    }
-
-    /// Starts anew at a corner of the load at the end of the last step.
-    fn corner(&mut self) {
-        (self.next, self.last) = (None, 1.0);
-        self.tracks.iter_mut().for_each(Track::turn);
+        self.tracks.iter_mut().for_each(at);
     }
 
     /// The next step to try, towards `stop`, shorter than the one `tried` before. An error if no step is short enough.
@@ -290,7 +289,7 @@ impl StepControl {
         let Proposal { wanted, order, .. } = proposal;
         self.tracks.iter_mut().zip(loads).for_each(|(track, load)| track.accept(time, *load));
         if at_corner {
-            self.corner();
+            self.anew(Track::turn);
         } else if dt < 0.99 * wanted && self.last * (wanted / dt).powi(order as i32) <= 1.0 {
             self.next = self.next.map(|next| next.max(wanted));
         }

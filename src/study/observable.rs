@@ -53,7 +53,7 @@ impl Observable {
             Observable::Approach => "approach",
             Observable::Force => "force",
             Observable::ContactArea => "contact area",
-            Observable::GreatestPressure => "greatest pressure",
+            Observable::GreatestPressure => "maximum pressure",
         }
     }
 

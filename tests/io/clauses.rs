@@ -342,7 +342,7 @@ fn shapes(t: &mut Table) {
     t.row(Dugdale::new(0.1, 1.0e-6).unwrap().with_width(2.1), Value, "width of the end of Dugdale's law = 2.1 → in [0.01, 2]");
     t.row(attraction_laws::attracts_less_with_the_gap(&Growing), Value, "the traction does not grow with the gap: …1e-9 m is 0.999…");
     t.row(VanDerWaals::new(0.1, NAN), Value, "range of the attraction = NaN → finite, > 0 and at most 1e300 m");
-    t.row(VanDerWaals::new(1.0e300, 1.0e-300), Value, "greatest traction of the attraction = inf → finite and > 0");
+    t.row(VanDerWaals::new(1.0e300, 1.0e-300), Value, "maximum traction of the attraction = inf → finite and > 0");
     t.row(MaugisDugdale::new(1.0e-3, 1.0e6, 0.05, 0.0), Value, "traction = … → finite and > 0");
     t.row(Dmt::new(1.0e-3, NAN, 0.05), Value, "contact modulus = … → finite and > 0");
     t.row(RigidPunch::new(1.0e-3, 1.0e6, -1.0, 0.0), Value, "force = -1.0 → finite and >= 0");

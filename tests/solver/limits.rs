@@ -186,7 +186,7 @@ fn runs_under_the_least_loads_end() {
                     match ended {
                         Ok(_) => answers += 1,
                         Err(Error::OutOfRange {
-                            field: "greatest force of the run" | "greatest depth of the run",
+                            field: "maximum force of the run" | "maximum depth of the run",
                             ..
                         }) => {
                             assert!(size < 1e-290, "{what}");

@@ -12,7 +12,7 @@ use viscocontact::prelude::*;
 const TOLERANCES: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
 const QUANTITIES: [&str; 6] = [
     "approach or force",
-    "greatest pressure",
+    "maximum pressure",
     "central pressure",
     "greatest over budget",
     "central over budget",

@@ -53,7 +53,7 @@ struct Seen {
 
 /// On a mesh the contact area changes by whole cells: it is off by the cells that are in contact in one of two states only, and
 /// so by the greatest pressure that acts on such a cell.
-const QUANTITIES: [&str; 5] = ["approach", "force", "tilt", "greatest pressure", "contact area"];
+const QUANTITIES: [&str; 5] = ["approach", "force", "tilt", "maximum pressure", "contact area"];
 
 fn seen(contact: &ViscoelasticContact) -> Seen {
     let [tilt1, tilt2] = contact.tilt();

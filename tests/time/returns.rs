@@ -107,6 +107,6 @@ fn cells_that_leave_in_long_steps_are_honest() {
         (worst, deepest) = (worst.max((approach - fine.approach()).abs()), deepest.max(fine.approach()));
     }
     let worst = worst / deepest / tolerance;
-    println!("cells leave in {leaves} steps, greatest error {worst:.2} tolerances");
+    println!("cells leave in {leaves} steps, maximum error {worst:.2} tolerances");
     assert!(leaves >= 3 && worst <= 2.0, "{worst}");
 }

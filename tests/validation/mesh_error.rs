@@ -238,7 +238,7 @@ fn errors_of_the_mesh_are_measured_to_a_factor() {
             estimate.map(|estimate| estimate.area),
             estimate.map(|estimate| estimate.pressure_field),
         ];
-        let names = ["approach or force", "greatest pressure", "area", "pressure field"];
+        let names = ["approach or force", "maximum pressure", "area", "pressure field"];
         for (which, (quantity, error)) in names.into_iter().zip([main, pressure, area, field]).enumerate() {
             let Some(stated) = stated[which] else {
                 unknown[which] += 1;

@@ -27,8 +27,8 @@ fn check(name: &str, study: &StudyResult, exact: impl Fn(f64) -> [f64; 2]) {
         (off, most, peak) = (off.max((approach - depth).abs()), most.max(depth), peak.max(pressure));
     }
     let approach = off / most;
-    let pressure = (study.values("greatest pressure").unwrap()[0] / peak - 1.0).abs();
-    let told = ["approach", "greatest pressure"].map(|name| study.measured(name).unwrap().error());
+    let pressure = (study.values("maximum pressure").unwrap()[0] / peak - 1.0).abs();
+    let told = ["approach", "maximum pressure"].map(|name| study.measured(name).unwrap().error());
     println!("{name}: approach {approach:.1e}, pressure {pressure:.1e}\n{study}");
     let ([n1, _], target) = (study.grid().cells(), study.accuracy.target());
     let show = |value: Option<f64>| value.map_or("–".to_owned(), |value| format!("{value:.1e}"));
@@ -118,8 +118,8 @@ fn punches_converge_slowly_and_their_pressure_never() {
     let exact = |t: f64| [material.contact_compliance(t) / (2.0 * radius), 0.0];
     let coarse = study_of(1e-2).run().unwrap();
     check("punch", &coarse, exact);
-    assert_eq!(coarse.measured("greatest pressure").unwrap().error(), None);
-    assert!(coarse.to_string().contains("greatest pressure: not converged"));
+    assert_eq!(coarse.measured("maximum pressure").unwrap().error(), None);
+    assert!(coarse.to_string().contains("maximum pressure: not converged"));
     let asked = study_of(3e-2).ask(Observable::GreatestPressure).run().unwrap();
     assert_eq!(asked.ending, Ending::NoConvergence);
     // first order: a hundred times the cells a side for a hundredth of the error

@@ -346,11 +346,11 @@ fn outcome(scene: &Scene, cells: usize) -> Result<Outcome, Error> {
         let pairs = states.iter().zip(&truth).filter_map(|(state, truth)| Some((state[which], truth[which]?)));
         pairs.map(|(found, exact)| (found - exact).abs() / greatest).reduce(f64::max)
     };
-    let found = result.values("greatest pressure").unwrap()[0];
+    let found = result.values("maximum pressure").unwrap()[0];
     let pressure = peak.map(|peak| (found / peak - 1.0).abs());
     // the area errs by twice the radius
     let errors = [error(0), error(1).map(|radius| 2.0 * radius), pressure];
-    let told = [main, "contact area", "greatest pressure"].map(|name| result.measured(name).unwrap().error());
+    let told = [main, "contact area", "maximum pressure"].map(|name| result.measured(name).unwrap().error());
     Ok(Outcome { errors, told, result })
 }
 
@@ -408,7 +408,7 @@ pub(super) fn tell_their_errors(scenes: impl Iterator<Item = Scene>, limit: u64)
     over.print("true over asked", 5);
     told.print("told over true, of approach or force", 3);
     of_area.print("told over true, of the area", 3);
-    of_peak.print("told over true, of the greatest pressure", 3);
+    of_peak.print("told over true, of the maximum pressure", 3);
     assert!(failed.is_empty(), "{} of {count}:\n{}", failed.len(), failed.join("\n"));
     assert!(over.count() > 0 && over.above(3.0) == 0 && over.quantile(0.99) <= 2.0, "true over asked");
     assert!(reached * 4 > count, "{reached} of {count} were reached");

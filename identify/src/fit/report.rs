@@ -20,7 +20,7 @@ use crate::statistics::{line, mean};
 pub enum FitWarning {
     /// The residuals are not independent at the level of 1 %: the model of the material, of the tip or of the noise is wrong.
     #[error(
-        "the residuals are not independent: {over_noise:.2} times the noise, {:.2} % of the greatest force; see Fit::variants for what this does to the modulus",
+        "the residuals are not independent: {over_noise:.2} times the noise, {:.2} % of the maximum force; see Fit::variants for what this does to the modulus",
         100.0 * .over_force
     )]
     Misfit {

@@ -103,7 +103,7 @@ impl StepReport {
     /// let report = contact.step(0.0, Load::approach(1.0e-3))?;
     /// let messages: Vec<_> = report.messages().collect();
     /// assert!(messages[0].starts_with("the bodies are steeper than 0.5"), "{messages:?}");
-    /// assert!(messages[0].ends_with("(greatest slope 0.8989)"), "{messages:?}");
+    /// assert!(messages[0].ends_with("(maximum slope 0.8989)"), "{messages:?}");
     /// # Ok::<(), Error>(())
     /// ```
     pub fn messages(&self) -> impl Iterator<Item = String> + '_ {

@@ -275,7 +275,7 @@ const SCENES: &[Scene] = &[
 ("a run under a force too small for numbers", || {
     let (mut contact, load) = (builder_on(grid(), maxwell()).build()?, StepLoad::new(Load::force(1.0e-320))?);
     contact.follow(&load, Stepping::adaptive(1e-2), 1.0).next_step().map(|report| report.map_or_else(String::new, told))
-}, "greatest force of the run"),
+}, "maximum force of the run"),
 ("an approach that never touches", || space_follows(StepLoad::new(Load::approach(-1.0e-5))?, Stepping::fixed(0.5), 1.0), "raise the approach"),
 ("a spring that never touches", || space_follows(Ramp::new(Load::spring(1.0e3, 0.0), Load::spring(1.0e3, -20.0e-6), 1.0)?, Stepping::adaptive(1e-2), 2.0), "raise the approach"),
 ("an approach that never touches, on states", || never_on_states(Load::approach(-20.0e-6), Load::approach(0.0)), "raise the approach"),

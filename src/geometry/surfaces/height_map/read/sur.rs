@@ -19,8 +19,8 @@ const WHOLE: [(&str, usize, usize); 12] = [
     ("type of object", 18, 2),
     ("special points", 86, 2),
     ("bits per point", 98, 2),
-    ("least height", 100, 4),
-    ("greatest height", 104, 4),
+    ("minimum height", 100, 4),
+    ("maximum height", 104, 4),
     ("points per line", 108, 4),
     ("lines", 112, 4),
     ("inversion", 290, 2),
@@ -89,7 +89,7 @@ fn map(header: &Header<'_>, rest: &[u8]) -> Result<HeightMap> {
     let data = rest.get(zones..).unwrap_or_default();
     let mut rows = number.decode_all(FORMAT, data, count(cells, spacing)?, true)?;
     if has_special {
-        let measured = header.finite("least height")?..=header.finite("greatest height")?;
+        let measured = header.finite("minimum height")?..=header.finite("maximum height")?;
         rows.iter_mut().filter(|height| !measured.contains(height)).for_each(|height| *height = f64::NAN);
     }
     HeightMap::from_rows(cells, spacing, &rows, First::Top, |height| up.to_metres(height * scale))
