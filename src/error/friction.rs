@@ -32,8 +32,8 @@ pub enum FrictionError {
 
     /// A force along the surface in a run is more than friction carries.
     #[error(
-        "at t = {} s the load along the surface is {} times what friction carries: the body slides along {direction:?}; \
-        give less, or prescribe its motion", rounded(*.time, TIME), rounded(*.over_limit, 5))]
+        "at t = {} s the load along the surface is {} times what friction carries: the body slides along \
+        {direction:?}; give less, or prescribe its motion", rounded(*.time, TIME), rounded(*.over_limit, 5))]
     Slides {
         /// End of the step \[s\].
         time: f64,

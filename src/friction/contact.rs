@@ -12,6 +12,7 @@ use crate::friction::load::{Component, LARGEST, ShearLoad};
 use crate::friction::newton::{NEGLIGIBLE, Work};
 use crate::friction::problem::{Cell, Problem, Solution, take_motion};
 use crate::friction::region::{Rectangle, extent};
+use crate::friction::report::{FrictionReport, Outcome};
 use crate::hereditary::{GroupHistory, Interpolant};
 use crate::load::Load;
 use crate::solver::RigidMotion;
@@ -82,38 +83,6 @@ struct StepFields {
     free: Vec<f64>,
     trial: Solution,
     work: Work,
-}
-
-/// What came of a step.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-#[must_use = "a contact that slides has not taken the step"]
-pub enum Outcome {
-    /// Friction carries the load.
-    Holds(Box<FrictionReport>),
-    /// Friction cannot carry the forces along the surface: the body slides, and the contact is as it was before the
-    /// step. Prescribe its motion in place of the force to see it slide.
-    Slides {
-        /// Shifts along x1 and x2 \[m\] and the twist \[rad\] of the sliding motion, of the largest component 1.
-        direction: [f64; 3],
-        /// The forces over what is carried in their ratio; infinite where bodies are apart.
-        over_limit: f64,
-    },
-}
-
-/// The report of a step.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub struct FrictionReport {
-    /// Of the normal contact.
-    pub normal: StepReport,
-    /// Newton steps.
-    pub iterations: usize,
-    /// Work along the surface, in convolutions of a pressure on the whole grid
-    /// ([`InfluenceKernel::convolve`](crate::InfluenceKernel::convolve)).
-    pub convolution_equivalents: f64,
-    /// The largest slip of a cell that sticks, over the largest displacement.
-    pub residual: f64,
 }
 
 impl FrictionContact {

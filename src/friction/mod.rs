@@ -21,13 +21,15 @@ mod operator;
 mod preconditioner;
 mod problem;
 mod region;
+mod report;
 mod run;
 mod secant;
 mod sliding_limit;
 
-pub use contact::{FrictionContact, FrictionReport, Outcome};
+pub use contact::FrictionContact;
 pub use history::ShearHistory;
 pub use limit::{Coulomb, FrictionLimit, Lesser, Tresca};
 pub use load::{Component, ShearLoad};
+pub use report::{FrictionReport, Outcome};
 
 pub use crate::error::FrictionError;

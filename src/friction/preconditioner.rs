@@ -8,8 +8,8 @@ use crate::solver::{Extension, ExtensionKind};
 /// Stiffness of waves as short as a cell, over the mean one. Between half and twice of it the work differs by 5 %.
 const SHORTEST: f64 = 2.0;
 
-/// S Eᵀ (M⁻¹ + λ̄)⁻¹ E S ≈ (c K + λ)⁻¹ on what cells are free to do, with M ≈ (c K)⁻¹, a multiplication in wave space on
-/// a grid without padding, and λ the curvature of the circles on which cells slip.
+/// S Eᵀ (M⁻¹ + λ̄)⁻¹ E S ≈ (c K + λ)⁻¹ on what cells are free to do, with M ≈ (c K)⁻¹, a multiplication in wave space
+/// on a grid without padding, and λ the curvature of the circles on which cells slip.
 ///
 /// * E extends a field smoothly: from cells that stick to what those that slip are not free to do, and from cells in
 ///   contact to all others. Cut off there, M would be wrong over a strip along each edge.

@@ -41,8 +41,8 @@ impl Problem<'_> {
     }
 
     /// How many times the prescribed forces may grow before the contact slides, and the rigid motion in which it then
-    /// does (shifts and twist, of the largest component 1). A motion that is prescribed holds the body. Of no meaning where
-    /// the step is cancelled.
+    /// does (shifts and twist, of the largest component 1). A motion that is prescribed holds the body. Of no meaning
+    /// where the step is cancelled.
     pub(super) fn load_factor(&self) -> (f64, [f64; 3]) {
         let (wanted, is_driven) =
             (self.wanted.map(|wanted| wanted.unwrap_or(0.0)), self.wanted.map(|wanted| wanted.is_some()));

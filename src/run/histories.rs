@@ -41,7 +41,7 @@ impl<'a> Histories<'a> {
         1 + self.others.len()
     }
 
-    /// Puts a load of each into `loads`, those along the surface of the contact last; `load` learns whether it may pull.
+    /// Puts a load of each into `loads`, those along the surface last; `load` learns whether it may pull.
     pub(super) fn loads<C: Contact>(
         &self,
         loads: &mut Vec<Load>,

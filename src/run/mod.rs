@@ -59,7 +59,7 @@ use std::fmt::Debug;
 use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
 
-use crate::contact::{Estimated, Figures, StepReport, Warnings};
+use crate::contact::StepReport;
 use crate::error::{Error, Result};
 use crate::fields::Fields;
 use crate::load::{Load, LoadHistory};
@@ -219,24 +219,9 @@ pub trait Contact: Clone + Debug + Send + Sync + 'static {
 
     /// The report of a step of length `dt` to this state, without work: what [`Contact::step_to`] of a contact of
     /// your own returns.
+    #[cfg(feature = "contacts")]
     fn report(&self, dt: f64, load: Load) -> StepReport {
-        StepReport {
-            time: self.time(),
-            force: self.force(),
-            approach: self.approach(),
-            contact_cells: self.in_space().map_or(0, |fields| fields.contact_cells()),
-            tilt: self.tilt(),
-            dt,
-            time_error: (dt == 0.0).then_some(0.0),
-            estimated: Estimated::under(&[load]),
-            warnings: Warnings::default(),
-            figures: Figures::default(),
-            iterations: 0,
-            fallback_iterations: 0,
-            convolutions: 0,
-            preconditioner_applications: 0,
-            residual: 0.0,
-        }
+        doubled::report(self, dt, load)
     }
 
     /// Columns of its own, names with units and values, which tables of its history have after the standard ones

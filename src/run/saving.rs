@@ -62,7 +62,8 @@ impl ViscoelasticContact {
         self.save_with::<(Progress, StepControl)>(path.as_ref(), None)
     }
 
-    /// What [`ViscoelasticContact::save`] writes, in memory: for pickles, and for messages between processes. On ranks the first one has it.
+    /// What [`ViscoelasticContact::save`] writes, in memory: for pickles, and for messages between processes. On ranks
+    /// the first one has it.
     ///
     /// Needs the feature `checkpoint`.
     ///

@@ -42,8 +42,8 @@ impl StatesContact {
         self.approach_gradient_unless(&AtomicBool::new(false))
     }
 
-    /// [`StatesContact::approach_gradient`], ended within an iteration of its elastic contacts where another thread sets
-    /// `cancelled`.
+    /// [`StatesContact::approach_gradient`], ended within an iteration of its elastic contacts where another thread
+    /// sets `cancelled`.
     ///
     /// # Errors
     /// As [`StatesContact::approach_gradient`], and [`Error::Cancelled`](crate::Error::Cancelled).

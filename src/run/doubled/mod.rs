@@ -12,7 +12,7 @@ mod rounded;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::contact::StepReport;
+use crate::contact::{Estimated, Figures, StepReport, Warnings};
 use crate::error::{Error, Result, StepError, within};
 use crate::load::{Load, LoadHistory};
 use crate::run::Contact;
@@ -210,6 +210,27 @@ impl<C: Contact, J: Judge<C>> Doubled<C, J> {
 /// Progress and control of the run of a contact of a user's own.
 pub(crate) fn lead<C: Contact>(contact: &C, stepping: Stepping, until: f64) -> (Progress, Box<dyn Control<C>>) {
     (Progress::begin(contact.time(), stepping), Box::new(Doubled::<C, Plain>::new(contact, stepping, until)))
+}
+
+/// The report of a step without work.
+pub(super) fn report<C: Contact>(contact: &C, dt: f64, load: Load) -> StepReport {
+    StepReport {
+        time: contact.time(),
+        force: contact.force(),
+        approach: contact.approach(),
+        contact_cells: contact.in_space().map_or(0, |fields| fields.contact_cells()),
+        tilt: contact.tilt(),
+        dt,
+        time_error: (dt == 0.0).then_some(0.0),
+        estimated: Estimated::under(&[load]),
+        warnings: Warnings::default(),
+        figures: Figures::default(),
+        iterations: 0,
+        fallback_iterations: 0,
+        convolutions: 0,
+        preconditioner_applications: 0,
+        residual: 0.0,
+    }
 }
 
 fn unless_cancelled(flag: Option<&AtomicBool>) -> Result<()> {
