@@ -15,7 +15,8 @@ pub enum Noise {
     #[default]
     White,
     /// Each deviation is φ times the one before plus an independent part: amplifiers, filters, thermal motion of a
-    /// cantilever. φ of each curve is the one of the greatest restricted likelihood of the residuals.
+    /// cantilever. φ of each curve is the one of the greatest restricted likelihood of the residuals. Where that is clearly likelier, the independent
+    /// parts have a long memory, too, as pink noise has: their spectrum grows as a power −2d of the frequency towards 0 ([`Fit::memory_of`](crate::Fit::memory_of)).
     Autoregressive,
     /// Autoregressive with a known φ, between −1 and 1.
     AutoregressiveWith(f64),
@@ -33,19 +34,27 @@ impl Noise {
 /// Makes the noise of one curve white: r ↦ L⁻¹ r where L Lᵀ is the covariance, up to a factor.
 #[derive(Clone, Debug)]
 pub(crate) enum Whitening {
-    /// First-order autoregressive noise; white if the coefficient is 0.
-    Autoregressive(f64),
+    /// First-order autoregressive noise of parts with a fractional memory (C. W. J. Granger & R. Joyeux, J. Time Ser. Anal. 1, 1980); white if both are 0.
+    Autoregressive {
+        /// The coefficient φ.
+        phi: f64,
+        /// The order d of the difference (1 − L)ᵈ that makes the parts independent.
+        memory: f64,
+    },
     /// By the Cholesky factor.
     Factor(Mat<f64>),
 }
 
 impl Whitening {
+    /// Of white noise.
+    pub(crate) const NONE: Whitening = Whitening::Autoregressive { phi: 0.0, memory: 0.0 };
+
     pub(crate) fn of(noise: &Noise, curve: usize, len: usize) -> Result<Whitening> {
         match noise {
-            Noise::White | Noise::Autoregressive => Ok(Whitening::Autoregressive(0.0)),
+            Noise::White | Noise::Autoregressive => Ok(Whitening::NONE),
             &Noise::AutoregressiveWith(phi) => {
                 within("autoregressive coefficient", phi, phi.abs() < 1.0, "between -1 and 1")?;
-                Ok(Whitening::Autoregressive(phi))
+                Ok(Whitening::Autoregressive { phi, memory: 0.0 })
             }
             Noise::Covariance(matrices) => {
                 let matrix = matrices.get(curve).map_or(&[][..], |matrix| matrix);
@@ -61,8 +70,11 @@ impl Whitening {
     /// Makes a column white in place.
     pub(crate) fn apply(&self, column: &mut [f64]) {
         match self {
-            Whitening::Autoregressive(0.0) => {}
-            Whitening::Autoregressive(phi) => {
+            &Whitening::Autoregressive { phi, memory } => {
+                difference(column, memory);
+                if phi == 0.0 {
+                    return;
+                }
                 for k in (1..column.len()).rev() {
                     column[k] -= phi * column[k - 1];
                 }
@@ -82,17 +94,38 @@ impl Whitening {
     /// The autoregressive coefficient, if there is one.
     pub(crate) fn correlation(&self) -> Option<f64> {
         match self {
-            Whitening::Autoregressive(phi) if *phi != 0.0 => Some(*phi),
+            Whitening::Autoregressive { phi, .. } if *phi != 0.0 => Some(*phi),
             _ => None,
         }
+    }
+
+    /// The order of the memory.
+    pub(crate) fn memory(&self) -> f64 {
+        if let Whitening::Autoregressive { memory, .. } = self { *memory } else { 0.0 }
     }
 
     /// −ln of the determinant of the covariance, up to the factor σ².
     pub(crate) fn log_weight(&self) -> f64 {
         match self {
-            Whitening::Autoregressive(phi) => (1.0 - phi * phi).ln(),
+            Whitening::Autoregressive { phi, .. } => (1.0 - phi * phi).ln(),
             Whitening::Factor(factor) => -2.0 * (0..factor.nrows()).map(|i| factor[(i, i)].ln()).sum::<f64>(),
         }
+    }
+}
+
+/// The fractional difference (1 − L)ᵈ of a column in place, of which nothing was before the first value.
+pub(crate) fn difference(column: &mut [f64], order: f64) {
+    if order == 0.0 {
+        return;
+    }
+    let factor = |last: &mut f64, k: usize| {
+        *last *= (k as f64 - order) / (k + 1) as f64;
+        Some(*last)
+    };
+    let factors: Vec<f64> = (0..column.len()).scan(1.0, factor).collect();
+    for k in (1..column.len()).rev() {
+        let past = column[..k].iter().rev().zip(&factors).map(|(value, factor)| value * factor).sum::<f64>();
+        column[k] += past;
     }
 }
 
@@ -112,11 +145,19 @@ mod tests {
             one[k] = 1.0;
             let mut other = one.clone();
             Whitening::of(&noise, 0, len).unwrap().apply(&mut one);
-            Whitening::Autoregressive(phi).apply(&mut other);
+            Whitening::Autoregressive { phi, memory: 0.0 }.apply(&mut other);
             assert!(one.iter().zip(&other).all(|(a, b)| (a - b).abs() < 1e-14), "{one:?} {other:?}");
         }
         let given = Whitening::of(&noise, 0, len).unwrap().log_weight();
-        assert!((given - Whitening::Autoregressive(phi).log_weight()).abs() < 1e-12);
+        assert!((given - Whitening::Autoregressive { phi, memory: 0.0 }.log_weight()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn two_half_differences_are_a_difference() {
+        let mut column: Vec<f64> = (0..50).map(|k| f64::from(k * k % 17)).collect();
+        let whole: Vec<f64> = (0..50).map(|k| column[k] - if k > 0 { column[k - 1] } else { 0.0 }).collect();
+        (0..2).for_each(|_| difference(&mut column, 0.5));
+        assert!(column.iter().zip(&whole).all(|(a, b)| (a - b).abs() < 1e-12), "{column:?}");
     }
 
     #[test]

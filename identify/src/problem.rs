@@ -6,19 +6,20 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use faer::Mat;
 
 use crate::error::{Error, Result};
-use crate::experiment::{Curve, Experiment};
+use crate::experiment::Curve;
 use crate::forward::{Cycle, LANES, PLAIN, Real, Sample, Tip};
 use crate::model::{Model, Scale};
 use crate::noise::{Noise, Whitening};
 use crate::parameters::{Chosen, Kind, Parameter, Property};
 use crate::protocol::Protocol;
 use crate::series::Prony;
-use crate::statistics::mean;
+use crate::statistics::{means, square};
 
 /// Least share of a modulus that relaxes.
 const LEAST_SHARE: f64 = 1e-12;
-/// Samples of a curve with which a search begins.
+/// Means of neighbouring samples of a curve with which a search begins, and with which it ends.
 const ROUGH: usize = 128;
+const LONG: usize = 2048;
 /// A search ends with the step that reduces the sum of squares by less than this fraction; one with few samples, early.
 const ENOUGH: [f64; 2] = [1e-10, 1e-4];
 /// Residuals are rounding below this fraction of the squared data.
@@ -34,6 +35,8 @@ pub(crate) struct Part {
     pub(crate) whitening: Whitening,
     /// Weight of the residuals made white.
     pub(crate) scale: f64,
+    /// Weight of means of samples, whose noise is less.
+    weight: f64,
     /// A further weight of each: below 1 for outliers.
     pub(crate) outliers: Vec<f64>,
     tip: Tip,
@@ -52,18 +55,16 @@ impl Part {
         };
         let (speed, outliers) = ((0..=last).map(speed).collect(), vec![1.0; times.len()]);
         let tip = Tip::new(index, &curve.experiment.tip, curve.experiment.surface);
-        Ok(Part { curve, whitening, scale: 1.0, outliers, tip, speed })
+        Ok(Part { curve, whitening, scale: 1.0, weight: 1.0, outliers, tip, speed })
     }
 
-    /// Means of neighbouring samples, as if their noise were white.
-    fn thinned(&self) -> Part {
-        let of = |values: &[f64]| -> Vec<f64> { values.chunks(self.len().div_ceil(ROUGH)).map(mean).collect() };
-        let Protocol { times, drive } = &self.curve.experiment.protocol;
-        let protocol = Protocol { times: of(times), drive: of(drive) };
-        let experiment = Experiment { protocol, ..self.curve.experiment.clone() };
-        let curve = Curve { experiment, force: of(&self.curve.force) };
-        let (outliers, speed, whitening) = (of(&self.outliers), of(&self.speed), Whitening::Autoregressive(0.0));
-        Part { curve, whitening, outliers, speed, ..self.clone() }
+    /// At most so many means of neighbouring samples, as if their noise were white.
+    fn thinned(&self, most: usize) -> Part {
+        let count = self.len().min(most);
+        let [outliers, speed] = [&self.outliers, &self.speed].map(|values| means(values, count));
+        let weight = self.weight * (self.len() as f64 / count as f64).sqrt();
+        let (curve, whitening) = (self.curve.means(count), Whitening::NONE);
+        Part { curve, whitening, weight, outliers, speed, ..self.clone() }
     }
 
     pub(crate) fn len(&self) -> usize {
@@ -73,12 +74,12 @@ impl Part {
     /// Makes a column of the data white, with its weights.
     pub(crate) fn whiten(&self, column: &mut [f64]) {
         self.whitening.apply(column);
-        column.iter_mut().zip(&self.outliers).for_each(|(value, weight)| *value *= self.scale * weight);
+        column.iter_mut().zip(&self.outliers).for_each(|(value, own)| *value *= self.scale * self.weight * own);
     }
 
     /// −ln of the determinant of the covariance, up to the factor σ².
     pub(crate) fn log_weight(&self) -> f64 {
-        self.whitening.log_weight() + 2.0 * self.len() as f64 * self.scale.ln()
+        self.whitening.log_weight() + 2.0 * self.len() as f64 * (self.scale * self.weight).ln()
     }
 
     /// The force at a sample over a property in which it is linear.
@@ -98,6 +99,8 @@ impl Part {
 pub(crate) struct Problem {
     pub(crate) model: Model,
     pub(crate) parts: Vec<Part>,
+    /// The problem of all samples, where those of the parts are means.
+    pub(crate) whole: Option<Arc<Problem>>,
     pub(crate) parameters: Vec<Parameter>,
     /// Shortest interval between samples and longest curve \[s\].
     pub(crate) window: [f64; 2],
@@ -118,15 +121,38 @@ impl Problem {
         let window = [shortest, times().map(|t| t[t.len() - 1] - t[0]).fold(0.0, f64::max)];
         let part = |(index, curve): (usize, Curve)| Part::new(index, curve, noise);
         let parts = curves.into_iter().enumerate().map(part).collect::<Result<_>>()?;
-        Ok(Problem { model, parts, parameters, window, enough: ENOUGH[0], work: Arc::default() })
+        Ok(Problem { model, parts, whole: None, parameters, window, enough: ENOUGH[0], work: Arc::default() })
     }
 
     /// The same problem with few samples, on which a search is cheap; `None` where there are few, or their noise is given by a matrix.
-    pub(crate) fn thinned(&self) -> Option<Problem> {
-        let is_long = self.parts.iter().any(|part| part.len() > ROUGH);
-        let is_simple = self.parts.iter().all(|part| matches!(part.whitening, Whitening::Autoregressive(_)));
-        let parts = || self.parts.iter().map(Part::thinned).collect();
-        (is_long && is_simple).then(|| Problem { parts: parts(), enough: ENOUGH[1], ..self.clone() })
+    pub(crate) fn rough(&self) -> Option<Problem> {
+        Some(Problem { enough: ENOUGH[1], ..self.thinned(ROUGH)? })
+    }
+
+    /// The same problem with means of neighbours in place of very many samples, which tell nothing more.
+    pub(crate) fn of_means(&self) -> Option<Problem> {
+        self.thinned(LONG)
+    }
+
+    fn thinned(&self, most: usize) -> Option<Problem> {
+        let is_long = self.parts.iter().any(|part| part.len() > most);
+        let is_simple = self.parts.iter().all(|part| matches!(part.whitening, Whitening::Autoregressive { .. }));
+        let parts = || self.parts.iter().map(|part| part.thinned(most)).collect();
+        (is_long && is_simple).then(|| Problem { parts: parts(), whole: None, ..self.clone() })
+    }
+
+    /// The same problem with all samples.
+    pub(crate) fn whole(&self) -> &Problem {
+        self.whole.as_deref().unwrap_or(self)
+    }
+
+    /// Share of the information on a coordinate that means of neighbours have lost, by the variance of its slopes within a mean; the maximum of all.
+    pub(crate) fn lost(&self, slopes: &[Vec<f64>]) -> f64 {
+        let of = |column: &Vec<f64>| {
+            let change: f64 = column.windows(2).map(|pair| (pair[1] - pair[0]).powi(2) / 12.0).sum();
+            if change > 0.0 { change / square(column) } else { 0.0 }
+        };
+        if self.whole.is_none() { 0.0 } else { slopes.iter().map(of).fold(0.0, f64::max) }
     }
 
     /// The same problem with a simpler model; `None` where parameters of the material are given.
@@ -334,8 +360,12 @@ impl Problem {
 
     /// Derivatives of the residuals by the free coordinates.
     pub(crate) fn jacobian(&self, coordinates: &[f64]) -> Result<Mat<f64>> {
-        let slopes = self.slopes(coordinates)?;
-        Ok(Mat::from_fn(self.len(), slopes.len(), |k, j| slopes[j][k]))
+        Ok(self.matrix(&self.slopes(coordinates)?))
+    }
+
+    /// A matrix of columns of the data.
+    pub(crate) fn matrix(&self, columns: &[Vec<f64>]) -> Mat<f64> {
+        Mat::from_fn(self.len(), columns.len(), |k, j| columns[j][k])
     }
 
     /// Derivatives of the residuals, a column for each free coordinate.

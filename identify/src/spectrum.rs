@@ -86,7 +86,7 @@ impl Fit {
             let total: f64 = moduli.iter().sum();
             prony = Prony { moduli: moduli.iter().map(|m| m.max(LEAST * total)).collect(), rates: rates.clone() };
             if change <= AGREED * greatest || round == MAX_ROUNDS && change <= 1e-3 * greatest {
-                let of_curve = |curve: usize| problem.force(curve, &self.values, &prony);
+                let of_curve = |curve: usize| problem.whole().force(curve, &self.values, &prony);
                 return Ok(FreeSpectrum {
                     equilibrium: moduli[0],
                     terms: rates[1..].iter().zip(&moduli[1..]).map(|(rate, &modulus)| (1.0 / rate, modulus)).collect(),
@@ -173,7 +173,7 @@ fn basis(problem: &Problem, values: &[f64], prony: &Prony) -> Result<Mat<f64>> {
         problem.white(curves.iter().map(of_term))
     };
     let white: Vec<Vec<f64>> = (0..prony.moduli.len()).map(column).collect();
-    Ok(Mat::from_fn(problem.len(), white.len(), |row, column| white[column][row]))
+    Ok(problem.matrix(&white))
 }
 
 /// The smoothed moduli of the least criterion of cross-validation, with the strength of the smoothing and the sum of squares.

@@ -20,6 +20,11 @@ pub(crate) fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
+/// So many means of neighbouring values.
+pub(crate) fn means(values: &[f64], count: usize) -> Vec<f64> {
+    (0..count).map(|k| mean(&values[k * values.len() / count..(k + 1) * values.len() / count])).collect()
+}
+
 /// Standard deviation of the noise of some data, from second differences.
 pub(crate) fn scatter(data: &[f64]) -> f64 {
     let differences = data.windows(3).map(|w| (w[0] - 2.0 * w[1] + w[2]).powi(2));

@@ -1,27 +1,30 @@
 //! What was identified.
 
+mod band;
 mod deviations;
 mod intervals;
 mod report;
 mod reweigh;
+mod scatter;
 mod search;
 mod variants;
 
+use std::sync::OnceLock;
 use std::sync::atomic::Ordering;
 
-use faer::{Col, Mat};
+use faer::Mat;
 use viscocontact::rheology::Material;
 
 use crate::bounds::Bounds;
-use crate::error::{Error, Result, within};
+use crate::error::{Error, Result};
 use crate::experiment::{Curve, Experiment};
 use crate::forward::Sample;
 use crate::identification::Identification;
 use crate::model::{Model, Scale};
 use crate::parameters::Parameter;
-use crate::problem::{Part, Problem, WIDTH};
+use crate::problem::{Part, Problem};
 use crate::series::Prony;
-use crate::statistics::{correlation_test, student};
+use crate::statistics::{correlation_test, means, student};
 use deviations::{inverse, limit, robust_deviation, sandwich};
 pub use report::{FitWarning, ranked};
 use search::Found;
@@ -67,8 +70,8 @@ pub struct Fit {
     /// Covariance of the estimates, and of the coordinates.
     spread: Bounds,
     of_coordinates: Mat<f64>,
-    /// Which coordinates are at a limit.
-    limits: Vec<bool>,
+    /// Ends of profiles, for bands, and whether the data bound them.
+    ends: OnceLock<Vec<(Vec<f64>, bool)>>,
     samples: Vec<Vec<Sample>>,
     forces: Vec<Vec<f64>>,
     /// Measured less modelled force, by curve.
@@ -78,15 +81,18 @@ pub struct Fit {
     freedom: f64,
     sum: f64,
     iterations: usize,
-    /// The least sum of squares of a model that this one contains.
-    contained: Option<(Model, f64)>,
+    /// A model that this one contains, and its sum of squares over the least one.
+    above: Option<(Model, f64)>,
+    /// Share of the information that means of neighbours have lost.
+    lost: f64,
 }
 
 impl Fit {
     pub(crate) fn new(identification: &Identification, problem: Problem, found: Found) -> Result<Fit> {
-        let Found { minimum, contained } = found;
+        let Found { minimum, above } = found;
         let (coordinates, residuals, sum) = (&minimum.coordinates, &minimum.residuals, minimum.sum());
-        let jacobian = &problem.jacobian(coordinates)?;
+        let slopes = problem.slopes(coordinates)?;
+        let (jacobian, lost) = (&problem.matrix(&slopes), problem.lost(&slopes));
         let values = problem.values(coordinates);
         let prony = problem.prony(&values)?.finite()?;
         let (count, points) = (coordinates.len(), problem.len());
@@ -139,15 +145,16 @@ impl Fit {
         };
         let estimates = free.iter().enumerate().zip(at).map(estimate).collect();
         let (mut samples, mut forces, mut residuals) = (Vec::new(), Vec::new(), Vec::new());
-        for (curve, part) in problem.parts.iter().enumerate() {
-            let response = problem.samples(curve, &values, &prony)?;
-            let force = problem.measured(curve, &values, response.iter().map(|sample| sample.force));
+        let whole = problem.whole();
+        for (curve, part) in whole.parts.iter().enumerate() {
+            let response = whole.samples(curve, &values, &prony)?;
+            let force = whole.measured(curve, &values, response.iter().map(|sample| sample.force));
             residuals.push(part.curve.force.iter().zip(&force).map(|(data, force)| data - force).collect());
             samples.push(response);
             forces.push(force);
         }
         let of_coordinates = inverse * faer::Scale(sigma * sigma);
-        let curves = problem.parts.iter().map(|part| part.curve.clone()).collect();
+        let curves = whole.parts.iter().map(|part| part.curve.clone()).collect();
         let (identification, iterations) = (identification.clone(), minimum.steps);
         Ok(Fit {
             identification,
@@ -158,7 +165,7 @@ impl Fit {
             estimates,
             spread,
             of_coordinates,
-            limits,
+            ends: OnceLock::new(),
             samples,
             forces,
             residuals,
@@ -166,7 +173,8 @@ impl Fit {
             freedom,
             sum,
             iterations,
-            contained,
+            above,
+            lost,
         })
     }
 
@@ -193,43 +201,6 @@ impl Fit {
     /// Correlation of two parameters.
     pub fn correlation(&self, one: &str, other: &str) -> Option<f64> {
         self.spread.correlation(one, other)
-    }
-
-    /// The contact modulus E*(t) at a time after a sudden step \[Pa\], by the law of the model: NaN where the time is negative or not finite. What the
-    /// data show lies between their shortest sampling interval and the length of the longest curve; at other times the law is extrapolated.
-    pub fn modulus(&self, t: f64) -> f64 {
-        self.modulus_of(&self.values, t)
-    }
-
-    /// The law of the model for some values of all parameters.
-    fn modulus_of(&self, values: &[f64], t: f64) -> f64 {
-        let model = self.model();
-        model.modulus(&values[..model.parameters().len()], t).unwrap_or(f64::NAN)
-    }
-
-    /// The contact modulus at a time with its standard deviation, relative: \[Pa, 1\]. The deviation is infinite at times at which the modulus
-    /// depends on a parameter that has run to its limit.
-    pub fn modulus_band(&self, t: f64) -> [f64; 2] {
-        let coordinates = self.problem.coordinates(&self.values);
-        let moved = |column, width| self.modulus_of(&self.problem.moved(&coordinates, column, width), t).ln();
-        // derivatives of ln E by the coordinates, which may all be moved either way
-        let slopes = Col::from_fn(coordinates.len(), |column| {
-            let slope = (moved(column, WIDTH) - moved(column, -WIDTH)) / (2.0 * WIDTH);
-            if slope.is_finite() { slope } else { 0.0 }
-        });
-        let is_known = (0..slopes.nrows()).all(|k| !self.limits[k] || slopes[k].abs() < LITTLE);
-        let variance = slopes.transpose() * &self.of_coordinates * &slopes;
-        [self.modulus(t), if is_known { variance.max(0.0).sqrt() } else { f64::INFINITY }]
-    }
-
-    /// The shear modulus G(t) = E*(t) (1 − ν)/2 for a known constant Poisson's ratio \[Pa\]. One contact cannot tell ν.
-    ///
-    /// # Errors
-    /// If the ratio is outside (−1, 0.5], or the time is negative or not finite.
-    pub fn shear_modulus(&self, t: f64, poisson: f64) -> Result<f64> {
-        within("Poisson's ratio", poisson, poisson > -1.0 && poisson <= 0.5, "> -1 and at most 0.5")?;
-        within("time", t, t >= 0.0, "finite and >= 0")?;
-        Ok(0.5 * self.modulus(t) * (1.0 - poisson))
     }
 
     /// The material, against a rigid tip, for contacts of the main crate: incompressible, with the identified contact modulus. Its contact
@@ -289,9 +260,20 @@ impl Fit {
         self.problem.parts.get(curve)?.whitening.correlation()
     }
 
+    /// The order d of the long memory that the noise of a curve has beside its autoregressive coefficient: 0 if it has none, ½ of pink noise.
+    pub fn memory_of(&self, curve: usize) -> f64 {
+        self.problem.parts.get(curve).map_or(0.0, |part| part.whitening.memory())
+    }
+
     /// Iterations of the search.
     pub fn iterations(&self) -> usize {
         self.iterations
+    }
+
+    /// Share of the information on a parameter that is lost where a curve of more than 2048 samples, in noise that is white or of unknown correlation, is
+    /// fitted in so many means of neighbours: the maximum of all parameters. Where it is above 1 %, and of shorter curves, each sample is fitted, and it is 0.
+    pub fn information_lost(&self) -> f64 {
+        self.lost
     }
 
     /// Work of the search: exponentials that were advanced by a sample, each derivative counted.
@@ -307,8 +289,12 @@ impl Fit {
     /// Probability of correlations of the residuals as great, if the model is right (Ljung & Box 1978): a small one means that the model is wrong, of
     /// the material or of the noise.
     pub fn probability(&self) -> f64 {
-        let mut white = self.residuals.clone();
-        white.iter_mut().zip(&self.problem.parts).for_each(|(residuals, part)| part.whiten(residuals));
+        let white = |(residuals, part): (&Vec<f64>, &Part)| {
+            let mut white = means(residuals, part.len());
+            part.whiten(&mut white);
+            white
+        };
+        let white: Vec<_> = self.residuals.iter().zip(&self.problem.parts).map(white).collect();
         correlation_test(&white, if self.identification.fits_correlation() { self.curves.len() } else { 0 })
     }
 

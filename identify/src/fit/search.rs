@@ -1,29 +1,39 @@
 //! The search for the parameters of a fit.
 
+use std::sync::Arc;
+
+use faer::Col;
 #[cfg(feature = "rayon")]
 use rayon::prelude::*;
 use viscocontact::numeric::LeastSquares;
 
+use super::scatter::is_error;
+use crate::bounds::inverse_gram;
 use crate::error::{Error, Result};
 use crate::experiment::Curve;
 use crate::fit::Fit;
 use crate::identification::Identification;
 use crate::model::Model;
+use crate::noise::Noise;
 use crate::parameters::Property;
 use crate::problem::Problem;
 use crate::start::starts;
-use crate::statistics::{is_flat, scatter};
+use crate::statistics::{is_flat, means, scatter};
 
 /// Rounds of fits, each with the noise of the one before.
 const MAX_ROUNDS: usize = 12;
+/// Share of the information on a parameter that means of neighbours may lose.
+const MOST_LOST: f64 = 0.01;
+/// Deviations by which means may move a coordinate.
+const LITTLE_MOVED: f64 = 0.3;
 /// Relative difference of the sums of squares of one minimum.
 const AGREED: f64 = 1e-7;
 
 /// What a search found.
 pub(crate) struct Found {
     pub(super) minimum: LeastSquares,
-    /// A model that this one contains, and its sum of squares.
-    pub(super) contained: Option<(Model, f64)>,
+    /// A model that this one contains, and its sum of squares over the least one.
+    pub(super) above: Option<(Model, f64)>,
 }
 
 impl Identification {
@@ -33,13 +43,25 @@ impl Identification {
     /// If no curve is given, a parameter has an unknown name or a value outside its range, a tip never touches or goes beyond its
     /// last elastic state, there are not more points than parameters, or the search does not converge.
     pub fn fit(&self, curves: &[Curve]) -> Result<Fit> {
-        let mut problem = self.problem(curves.to_vec())?;
+        let whole = self.problem(curves.to_vec())?;
         if let Some(curve) = curves.iter().position(|curve| is_flat(&curve.force)) {
             return Err(Error::NoContact { curve });
         }
         let scatters: Vec<f64> = curves.iter().map(|curve| scatter(&curve.force)).collect();
+        // known correlations are those of samples, and an outlier is one
+        let is_simple = matches!(self.noise, Noise::White | Noise::Autoregressive) && !self.robust;
+        let means = is_simple.then(|| whole.of_means()).flatten();
+        let (mut problem, all) = means.map_or((whole.clone(), None), |means| (means, Some(whole)));
         self.balance(&mut problem, &scatters);
         let mut found = self.global_minimum(&problem)?;
+        if let Some(mut all) = all {
+            self.balance(&mut all, &scatters);
+            problem.whole = Some(Arc::new(all.clone()));
+            if !self.means_suffice(&problem, &found.minimum)? {
+                problem = all;
+                found.minimum = self.minimum(&problem, found.minimum.coordinates)?;
+            }
+        }
         if self.fits_correlation() || self.robust || self.finds_deviations(&problem) {
             for _ in 0..MAX_ROUNDS {
                 let mut next = problem.clone();
@@ -49,7 +71,7 @@ impl Identification {
                 }
                 problem = next;
                 // sums of squares of other weights cannot be compared
-                found = Found { minimum: self.minimum(&problem, found.minimum.coordinates)?, contained: None };
+                found = Found { minimum: self.minimum(&problem, found.minimum.coordinates)?, above: None };
             }
         }
         let fit = Fit::new(self, problem, found)?;
@@ -96,6 +118,29 @@ impl Identification {
         curves.iter().enumerate().map(fit).collect()
     }
 
+    /// Whether the minimum of means of neighbours is that of all samples, nearly: they lose little of the information, and the residuals of the samples
+    /// would move no coordinate by much of its deviation. They may move it where the drive has errors of measurement, which means reduce.
+    fn means_suffice(&self, problem: &Problem, minimum: &LeastSquares) -> Result<bool> {
+        let (coordinates, whole) = (&minimum.coordinates, problem.whole());
+        let (slopes, values) = (problem.slopes(coordinates)?, problem.values(coordinates));
+        let prony = problem.prony(&values)?;
+        let (mut differences, mut has_errors) = (Vec::new(), false);
+        for (curve, (part, all)) in problem.parts.iter().zip(&whole.parts).enumerate() {
+            let samples = whole.samples(curve, &values, &prony)?;
+            let force = whole.measured(curve, &values, samples.iter().map(|sample| sample.force));
+            let residuals: Vec<f64> = all.curve.force.iter().zip(&force).map(|(data, force)| data - force).collect();
+            has_errors |= is_error(&samples, &residuals);
+            let coarse = problem.force(curve, &values, &prony)?;
+            differences.push(means(&force, part.len()).iter().zip(coarse).map(|(fine, coarse)| fine - coarse).collect());
+        }
+        let (differences, jacobian) = (problem.white(differences), problem.matrix(&slopes));
+        let inverse = inverse_gram(&jacobian, 1e-13)?;
+        let moved = &inverse * jacobian.transpose() * Col::from_fn(differences.len(), |k| differences[k]);
+        let deviation = (minimum.sum() / problem.len() as f64).sqrt();
+        let is_same = (0..moved.nrows()).all(|k| moved[k].abs() < LITTLE_MOVED * deviation * inverse[(k, k)].sqrt());
+        Ok(problem.lost(&slopes) <= MOST_LOST && (is_same || has_errors))
+    }
+
     /// The least of the minima from several starts, of which one is the minimum of each model that this one contains. Most of the search is on
     /// few samples.
     fn global_minimum(&self, problem: &Problem) -> Result<Found> {
@@ -106,7 +151,7 @@ impl Identification {
             Some((inner, minimum.sum(), problem.coordinates(&values)))
         });
         let start = inside.iter().map(|(.., coordinates)| coordinates.clone());
-        let rough = problem.thinned();
+        let rough = problem.rough();
         let some = rough.as_ref().unwrap_or(problem);
         let mut best = self.least(some, start.clone().chain(starts(some)?), AGREED.max(some.enough));
         if rough.is_some() {
@@ -116,7 +161,8 @@ impl Identification {
                 best = if sum(&again) < sum(&best) { again } else { best };
             }
         }
-        Ok(Found { minimum: best?, contained: inside.map(|(model, sum, _)| (model, sum)) })
+        let above = inside.map(|(model, least, _)| (model, least / sum(&best)));
+        Ok(Found { minimum: best?, above })
     }
 
     /// The least of the minima from several starts; two that agree end the search.
