@@ -19,7 +19,7 @@ use crate::statistics::{means, square};
 const LEAST_SHARE: f64 = 1e-12;
 /// Means of neighbouring samples of a curve with which a search begins, and with which it ends.
 const ROUGH: usize = 128;
-const LONG: usize = 2048;
+pub(crate) const LONG: usize = 2048;
 /// A search ends with the step that reduces the sum of squares by less than this fraction; one with few samples, early.
 const ENOUGH: [f64; 2] = [1e-10, 1e-4];
 /// Residuals are rounding below this fraction of the squared data.
@@ -46,7 +46,7 @@ pub(crate) struct Part {
 
 impl Part {
     fn new(index: usize, curve: Curve, noise: &Noise) -> Result<Part> {
-        let whitening = Whitening::of(noise, index, curve.force.len())?;
+        let whitening = Whitening::of(noise)?;
         let Protocol { times, drive } = &curve.experiment.protocol;
         let last = times.len() - 1;
         let speed = |k: usize| {
@@ -63,7 +63,7 @@ impl Part {
         let count = self.len().min(most);
         let [outliers, speed] = [&self.outliers, &self.speed].map(|values| means(values, count));
         let weight = self.weight * (self.len() as f64 / count as f64).sqrt();
-        let (curve, whitening) = (self.curve.means(count), Whitening::NONE);
+        let (curve, whitening) = (self.curve.means(count), Whitening::default());
         Part { curve, whitening, weight, outliers, speed, ..self.clone() }
     }
 
@@ -124,21 +124,16 @@ impl Problem {
         Ok(Problem { model, parts, whole: None, parameters, window, enough: ENOUGH[0], work: Arc::default() })
     }
 
-    /// The same problem with few samples, on which a search is cheap; `None` where there are few, or their noise is given by a matrix.
+    /// The same problem with few samples, on which a search is cheap; `None` where there are few.
     pub(crate) fn rough(&self) -> Option<Problem> {
         Some(Problem { enough: ENOUGH[1], ..self.thinned(ROUGH)? })
     }
 
-    /// The same problem with means of neighbours in place of very many samples, which tell nothing more.
-    pub(crate) fn of_means(&self) -> Option<Problem> {
-        self.thinned(LONG)
-    }
-
-    fn thinned(&self, most: usize) -> Option<Problem> {
+    /// The same problem with at most so many means of neighbours of each curve; `None` where there are no more samples.
+    pub(crate) fn thinned(&self, most: usize) -> Option<Problem> {
         let is_long = self.parts.iter().any(|part| part.len() > most);
-        let is_simple = self.parts.iter().all(|part| matches!(part.whitening, Whitening::Autoregressive { .. }));
         let parts = || self.parts.iter().map(|part| part.thinned(most)).collect();
-        (is_long && is_simple).then(|| Problem { parts: parts(), whole: None, ..self.clone() })
+        is_long.then(|| Problem { parts: parts(), whole: None, ..self.clone() })
     }
 
     /// The same problem with all samples.
@@ -322,6 +317,19 @@ impl Problem {
             each.fold(force, |sum, part| sum + part)
         };
         contact.enumerate().map(of).collect()
+    }
+
+    /// Contact, force and residuals of a curve at each sample.
+    pub(crate) fn response(
+        &self,
+        curve: usize,
+        values: &[f64],
+        prony: &Prony,
+    ) -> Result<(Vec<Sample>, Vec<f64>, Vec<f64>)> {
+        let samples = self.samples(curve, values, prony)?;
+        let force = self.measured(curve, values, samples.iter().map(|sample| sample.force));
+        let residuals = self.parts[curve].curve.force.iter().zip(&force).map(|(data, force)| data - force).collect();
+        Ok((samples, force, residuals))
     }
 
     /// The data of a curve without offset, drift, tilt and drag.

@@ -29,7 +29,13 @@ fn pink(count: usize, rng: &mut ChaCha8Rng) -> Vec<f64> {
 
 /// A ramp, a hold and a retraction of some samples; the drive is measured with an error, or moves so, by `scatter`; `noise` is that of the force over its
 /// maximum.
-fn curve(samples: f64, scatter: f64, is_motion: bool, spring: Option<f64>, noise: &[f64]) -> impl Fn(&mut ChaCha8Rng) -> Curve {
+fn curve(
+    samples: f64,
+    scatter: f64,
+    is_motion: bool,
+    spring: Option<f64>,
+    noise: &[f64],
+) -> impl Fn(&mut ChaCha8Rng) -> Curve {
     let protocol = Protocol::ramp_hold_retract(2.0e-6, [0.2e-6, DEPTH], 2.0, 3.5 / samples).unwrap();
     let noise = noise.to_vec();
     move |rng| {
@@ -82,8 +88,7 @@ fn errors_of_the_drive_are_warned_of_where_they_matter() {
             if has_drive_error(&fit) {
                 warned += 1;
                 let means = zener().fit(&[curve.averaged(3).unwrap()]).unwrap();
-                if std::env::var("SHOW").is_ok() { println!("{seed} {samples:.0} {scatter:.1e} {noise:.1e} {spring:?}: {} {} {:?}", covered(&fit), covered(&means), means.warnings().iter().map(|w| w.to_string().chars().take(50).collect::<String>()).collect::<Vec<_>>()); }
-                averaged.push(covered(&means));
+                averaged.extend((!has_drive_error(&means)).then(|| covered(&means)));
             } else {
                 plain.push(covered(&fit));
             }
@@ -94,9 +99,10 @@ fn errors_of_the_drive_are_warned_of_where_they_matter() {
             share(&plain),
             share(&averaged)
         );
-        assert!(if is_motion { 50 * warned <= count } else { 20 * warned >= 19 * count || share(&plain) > 0.9 });
-        assert!(plain.len() < 10 || share(&plain) > 0.9, "{plain:?}");
-        assert!(averaged.len() < 10 || share(&averaged) > 0.88, "{averaged:?}");
+        // what is missed in silence, at either stage
+        let silent = plain.iter().chain(&averaged).map(|covered| 3 - covered).sum::<usize>();
+        assert!(silent <= (3 * count).div_ceil(10), "{silent} of {}", 3 * count);
+        assert!(if is_motion { 50 * warned <= count } else { 2 * warned > count }, "{warned}");
     }
 }
 
@@ -116,7 +122,9 @@ fn slow_noise_has_a_memory() {
             all.push(covered(&fit));
         }
         let share = all.iter().sum::<usize>() as f64 / (3 * count) as f64;
-        println!("noise {white} and {slow}: {share:.3} of the intervals of {count} hold the truth, {remembered} have a memory");
+        println!(
+            "noise {white} and {slow}: {share:.3} of the intervals of {count} hold the truth, {remembered} have a memory"
+        );
         assert!(share > 0.88 - 0.1 * (12.0 / count as f64).sqrt() && 2 * remembered > count, "{share} {remembered}");
     }
 }
@@ -139,7 +147,10 @@ fn long_curves_are_fitted_in_means() {
             assert_eq!(has_drive_error(&fit), scatter > 0.0);
             assert!(fit.model() != Model::Zener || covered(&fit) == 3, "{:?}", fit.estimates());
             let is_true = fit.model() == Model::Zener && scatter == 0.0;
-            assert!(!is_true || (fit.sigma() / (5e-3 * long.force().iter().fold(0.0, |a: f64, b| a.max(*b))) - 1.0).abs() < 0.15);
+            assert!(
+                !is_true
+                    || (fit.sigma() / (5e-3 * long.force().iter().fold(0.0, |a: f64, b| a.max(*b))) - 1.0).abs() < 0.15
+            );
         }
     }
     // exact forces, whose corners means would round: each sample is fitted

@@ -5,7 +5,6 @@ mod bounds;
 mod continued;
 mod coverage;
 mod data;
-mod drainage;
 mod drive;
 mod dynamic;
 mod instruments;

@@ -36,8 +36,6 @@ getters! {Estimate, of:
     /// Standard deviation on its `scale`: relative for moduli, times and stiffness, of ln(x/(1 − x)) for exponents, else in the unit of the value. Infinite
     /// of a parameter without effect at its `limit`.
     deviation: f64 = of.deviation;
-    /// The same from the scatter of the residuals, without an assumption on the noise.
-    robust_deviation: f64 = of.robust_deviation;
     /// Interval of 95 %.
     interval: (f64, f64) = of.interval.into();
     /// The scale of the deviations: "logarithm", "logit" (ln(x/(1 − x)), of exponents) or "linear".
@@ -107,22 +105,6 @@ impl Fit {
     #[pyo3(signature = (name, confidence=0.95))]
     fn profile_interval(&self, py: Python<'_>, name: &str, confidence: f64) -> PyResult<(f64, f64)> {
         py.detach(|| self.0.profile_interval(name, confidence)).or_raise().map(Into::into)
-    }
-
-    /// A spectrum without a model from the same curves: "equilibrium" [Pa], "times" [s] and "moduli" [Pa] of the terms, "smoothing", "sigma" [N]
-    /// and "forces", an array [N] for each curve.
-    fn free_spectrum<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let of = py.detach(|| self.0.free_spectrum()).or_raise()?;
-        let (times, moduli): (Vec<f64>, Vec<f64>) = of.terms.iter().copied().unzip();
-        let forces: Vec<_> = of.forces.into_iter().map(|force| force.into_pyarray(py)).collect();
-        Ok(dict! { py;
-            "equilibrium": of.equilibrium,
-            "times": times.into_pyarray(py),
-            "moduli": moduli.into_pyarray(py),
-            "smoothing": of.smoothing,
-            "sigma": of.sigma,
-            "forces": forces,
-        })
     }
 
     /// The decades of time that the curves determine: dicts of "times" [s], "modulus" that relaxes there [Pa], its "deviation" [Pa], and

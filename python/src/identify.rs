@@ -208,18 +208,6 @@ pub fn ranked(fits: Vec<Bound<'_, PyAny>>) -> PyResult<Vec<(Fit, f64, f64)>> {
     Ok(ranked.into_iter().map(|(fit, difference, weight)| (Fit(fit), difference, weight)).collect())
 }
 
-/// Whether two relaxation times, each (time [s], standard deviation of its logarithm, contact area [m²]), agree with creep (equal times) or
-/// drainage of a pore fluid (times as the areas), at 95 %: "creep", "drainage", "undecided" or "neither".
-///
-/// >>> drainage_or_creep((0.8, 0.05, 1e-12), (3.1, 0.05, 4e-12))
-/// 'drainage'
-#[pyfunction]
-pub fn drainage_or_creep(one: (f64, f64, f64), other: (f64, f64, f64)) -> PyResult<String> {
-    let of = |(time, log_error, area): (f64, f64, f64)| id::TimeAtSize { time, log_error, area };
-    let scaling = of(one).scaling(of(other)).or_raise()?;
-    Ok(format!("{:?}", scaling.verdict).to_lowercase())
-}
-
 fn several(curves: &Bound<'_, PyAny>) -> PyResult<Vec<id::Curve>> {
     if let Ok(curve) = curves.cast::<Curve>() {
         return Ok(vec![curve.get().0.clone()]);

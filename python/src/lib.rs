@@ -74,7 +74,7 @@ mod _native {
     #[pymodule_export]
     use crate::held::Times;
     #[pymodule_export]
-    use crate::identify::{Identification, drainage_or_creep, ranked};
+    use crate::identify::{Identification, ranked};
     #[pymodule_export]
     use crate::kernels::{InfluenceKernel, Layer};
     #[pymodule_export]

@@ -42,7 +42,8 @@ impl Fit {
         };
         let ends = self.ends.get_or_init(|| self.ends()).iter().map(deviation);
         // of what is not a number, nothing is known
-        let deviation = ends.fold(variance.abs().sqrt(), |most, end| if most.is_nan() || end <= most { most } else { end });
+        let deviation =
+            ends.fold(variance.abs().sqrt(), |most, end| if most.is_nan() || end <= most { most } else { end });
         [modulus, if deviation.is_nan() { f64::INFINITY } else { deviation }]
     }
 

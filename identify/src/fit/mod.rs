@@ -25,7 +25,7 @@ use crate::parameters::Parameter;
 use crate::problem::{Part, Problem};
 use crate::series::Prony;
 use crate::statistics::{correlation_test, means, student};
-use deviations::{inverse, limit, robust_deviation, sandwich};
+use deviations::{inverse, limit, robust_deviation};
 pub use report::{FitWarning, ranked};
 use search::Found;
 pub use variants::Variant;
@@ -46,9 +46,6 @@ pub struct Estimate {
     pub scale: Scale,
     /// Standard deviation on that scale: relative for moduli, times and stiffness, of ln(α/(1 − α)) for exponents, in the unit of the value for the others.
     pub deviation: f64,
-    /// The same from the scatter of the residuals as it is, without the assumption on the noise (sandwich estimate, with the correlations
-    /// of neighbours after Newey & West 1987).
-    pub robust_deviation: f64,
     /// Interval of 95 % from the standard deviation.
     pub interval: [f64; 2],
     /// The limit at which the parameter is, if the data cannot tell it from there: then the model is a simpler one. A parameter that has
@@ -106,8 +103,6 @@ impl Fit {
         });
         let free: Vec<Parameter> = problem.free().cloned().collect();
         let scales = problem.scales(coordinates);
-        let (weighted, _) = inverse(&free, jacobian, sigma)?;
-        let sandwich = &scales * sandwich(&problem, residuals, jacobian, &weighted) * scales.transpose();
         let all = match identification.robust {
             true => &problem.without_outliers().jacobian(coordinates)?,
             false => jacobian,
@@ -115,10 +110,8 @@ impl Fit {
         let (inverse, limits) = inverse(&free, all, sigma)?;
         let spread = Bounds::new(&problem, &inverse, &scales, sigma);
         // of slow residuals so many are independent, and their standard deviation is known as that of half as many (F. E. Satterthwaite, 1946)
-        let independent = |part: &Part| {
-            let phi = part.whitening.correlation().unwrap_or_default();
-            0.5 * part.len() as f64 * (1.0 - phi) / (1.0 + phi)
-        };
+        let independent =
+            |part: &Part| 0.5 * part.len() as f64 * (1.0 - part.whitening.phi) / (1.0 + part.whitening.phi);
         let freedom = match identification.sigma() {
             _ if identification.fits_correlation() => problem.parts.iter().map(independent).sum::<f64>().min(freedom),
             Some(_) => 1e6,
@@ -138,7 +131,6 @@ impl Fit {
                 value,
                 scale: parameter.scale,
                 deviation,
-                robust_deviation: known(sandwich[(k, k)]),
                 interval: [-quantile, quantile].map(|quantile| parameter.scale.back(on_scale + quantile * deviation)),
                 limit: limits[k].then(|| limit(&parameter.name, value, scales[(k, k)])),
             }
@@ -146,12 +138,11 @@ impl Fit {
         let estimates = free.iter().enumerate().zip(at).map(estimate).collect();
         let (mut samples, mut forces, mut residuals) = (Vec::new(), Vec::new(), Vec::new());
         let whole = problem.whole();
-        for (curve, part) in whole.parts.iter().enumerate() {
-            let response = whole.samples(curve, &values, &prony)?;
-            let force = whole.measured(curve, &values, response.iter().map(|sample| sample.force));
-            residuals.push(part.curve.force.iter().zip(&force).map(|(data, force)| data - force).collect());
-            samples.push(response);
+        for curve in 0..whole.parts.len() {
+            let (of_samples, force, rest) = whole.response(curve, &values, &prony)?;
+            samples.push(of_samples);
             forces.push(force);
+            residuals.push(rest);
         }
         let of_coordinates = inverse * faer::Scale(sigma * sigma);
         let curves = whole.parts.iter().map(|part| part.curve.clone()).collect();
@@ -239,7 +230,7 @@ impl Fit {
         self.curves.get(curve).map(Curve::experiment).ok_or(none)
     }
 
-    /// Standard deviation of the noise \[N\]: of its independent part, if it is autoregressive. A factor of the given covariance, which is 1.
+    /// Standard deviation of the noise \[N\]: of its independent part, if it is autoregressive.
     /// Of several curves, the geometric mean; [`Fit::sigma_of`] is that of one.
     pub fn sigma(&self) -> f64 {
         self.sigma
@@ -257,12 +248,12 @@ impl Fit {
 
     /// The autoregressive coefficient of the noise of a curve, if it has one.
     pub fn autoregression_of(&self, curve: usize) -> Option<f64> {
-        self.problem.parts.get(curve)?.whitening.correlation()
+        Some(self.problem.parts.get(curve)?.whitening.phi).filter(|phi| *phi != 0.0)
     }
 
     /// The order d of the long memory that the noise of a curve has beside its autoregressive coefficient: 0 if it has none, ½ of pink noise.
     pub fn memory_of(&self, curve: usize) -> f64 {
-        self.problem.parts.get(curve).map_or(0.0, |part| part.whitening.memory())
+        self.problem.parts.get(curve).map_or(0.0, |part| part.whitening.memory)
     }
 
     /// Iterations of the search.

@@ -39,7 +39,9 @@ pub enum FitWarning {
     },
     /// The drive of a curve scatters, and the force does not follow it as that of a tip that moves so would: the scatter is an error of the measured drive. The
     /// fit takes it for a motion, which biases the moduli. [`Curve::averaged`](crate::Curve::averaged) reduces it.
-    #[error("curve {curve}: the force does not show the scatter of the drive of {scatter:.2e} m, an error of its measurement that biases the moduli: use Curve::averaged")]
+    #[error(
+        "curve {curve}: the force does not show the scatter of the drive of {scatter:.2e} m, an error of its measurement that biases the moduli: use Curve::averaged"
+    )]
     DriveError {
         /// Index of the curve.
         curve: usize,

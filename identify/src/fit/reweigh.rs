@@ -38,7 +38,7 @@ impl Identification {
         for part in &mut bare.parts {
             part.scale = 1.0;
             if self.fits_correlation() {
-                part.whitening = Whitening::NONE;
+                part.whitening = Whitening::default();
             }
         }
         let at = &minimum.coordinates;
@@ -52,9 +52,9 @@ impl Identification {
             let mut own = residuals[rows.clone()].to_vec();
             if self.fits_correlation() {
                 let [phi, memory] = correlation(&own, &jacobian, rows.start);
-                let before = part.whitening.correlation().unwrap_or_default();
-                is_found &= (phi - before).abs() < FOUND && memory == part.whitening.memory();
-                part.whitening = Whitening::Autoregressive { phi, memory };
+                let before = part.whitening;
+                is_found &= (phi - before.phi).abs() < FOUND && memory == before.memory;
+                part.whitening = Whitening { phi, memory };
                 part.whitening.apply(&mut own);
             }
             let leverage = |row: usize| {
@@ -111,7 +111,7 @@ fn correlation(residuals: &[f64], jacobian: &Mat<f64>, first: usize) -> [f64; 2]
     }
     // −2 ln of the restricted likelihood
     let unlikelihood = |columns: &[Vec<f64>], phi: f64| {
-        let (whitening, mut white) = (Whitening::Autoregressive { phi, memory: 0.0 }, columns.to_vec());
+        let (whitening, mut white) = (Whitening { phi, memory: 0.0 }, columns.to_vec());
         white.iter_mut().for_each(|column| whitening.apply(column));
         let white = Mat::from_fn(points, count + 1, |k, j| white[j][k]);
         let ridge = Mat::<f64>::identity(count + 1, count + 1) * faer::Scale(1e-12);
@@ -131,8 +131,8 @@ fn correlation(residuals: &[f64], jacobian: &Mat<f64>, first: usize) -> [f64; 2]
         (unlikelihood(&columns, phi) + if memory > 0.0 { CLEARLY } else { 0.0 }, [phi, memory])
     });
     let tried: Vec<_> = tried.collect();
-    let best = tried.iter().fold((f64::INFINITY, [0.0; 2]), |best, own| if own.0 < best.0 { *own } else { best });
+    let (least, [_, memory]) = tried.iter().fold((f64::INFINITY, [0.0; 2]), |a, b| if b.0 < a.0 { *b } else { a });
     // of memories that are as likely, the longest: with a shorter one deviations are too small
-    let longest = tried.iter().rev().find(|(cost, [_, memory])| *memory > 0.0 && cost - best.0 < ALIKE);
-    longest.filter(|_| best.1[1] > 0.0).map_or(best.1, |own| own.1)
+    let margin = if memory > 0.0 { ALIKE } else { 0.0 };
+    tried.iter().rfind(|(cost, _)| *cost <= least + margin).map_or([0.0; 2], |found| found.1)
 }

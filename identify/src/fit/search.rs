@@ -16,7 +16,7 @@ use crate::identification::Identification;
 use crate::model::Model;
 use crate::noise::Noise;
 use crate::parameters::Property;
-use crate::problem::Problem;
+use crate::problem::{LONG, Problem};
 use crate::start::starts;
 use crate::statistics::{is_flat, means, scatter};
 
@@ -43,23 +43,21 @@ impl Identification {
     /// If no curve is given, a parameter has an unknown name or a value outside its range, a tip never touches or goes beyond its
     /// last elastic state, there are not more points than parameters, or the search does not converge.
     pub fn fit(&self, curves: &[Curve]) -> Result<Fit> {
-        let whole = self.problem(curves.to_vec())?;
+        let mut problem = self.problem(curves.to_vec())?;
         if let Some(curve) = curves.iter().position(|curve| is_flat(&curve.force)) {
             return Err(Error::NoContact { curve });
         }
         let scatters: Vec<f64> = curves.iter().map(|curve| scatter(&curve.force)).collect();
         // known correlations are those of samples, and an outlier is one
         let is_simple = matches!(self.noise, Noise::White | Noise::Autoregressive) && !self.robust;
-        let means = is_simple.then(|| whole.of_means()).flatten();
-        let (mut problem, all) = means.map_or((whole.clone(), None), |means| (means, Some(whole)));
         self.balance(&mut problem, &scatters);
-        let mut found = self.global_minimum(&problem)?;
-        if let Some(mut all) = all {
-            self.balance(&mut all, &scatters);
-            problem.whole = Some(Arc::new(all.clone()));
-            if !self.means_suffice(&problem, &found.minimum)? {
-                problem = all;
-                found.minimum = self.minimum(&problem, found.minimum.coordinates)?;
+        let means = if is_simple { problem.thinned(LONG) } else { None };
+        let mut found = self.global_minimum(means.as_ref().unwrap_or(&problem))?;
+        if let Some(means) = means {
+            let means = Problem { whole: Some(Arc::new(problem.clone())), ..means };
+            match self.means_suffice(&means, &found.minimum)? {
+                true => problem = means,
+                false => found.minimum = self.minimum(&problem, found.minimum.coordinates)?,
             }
         }
         if self.fits_correlation() || self.robust || self.finds_deviations(&problem) {
@@ -106,7 +104,7 @@ impl Identification {
     /// Each result as of [`Identification::fit`], where the index of a curve is 0. An error of one curve does not end the others.
     pub fn fit_each(&self, curves: &[Curve], done: impl Fn(&Result<Fit>) + Sync) -> Vec<Result<Fit>> {
         let lists = self.chosen.0.iter().map(|(name, of)| of.each(Property::field(name), curves.len()).map(drop));
-        let suited: Result<()> = self.noise.suits(curves.len()).and_then(|()| lists.collect());
+        let suited: Result<()> = lists.collect();
         let fit = |(index, curve): (usize, &Curve)| {
             let fit = suited.clone().and_then(|()| self.of_curve(index).fit(std::slice::from_ref(curve)));
             done(&fit);
@@ -125,13 +123,12 @@ impl Identification {
         let (slopes, values) = (problem.slopes(coordinates)?, problem.values(coordinates));
         let prony = problem.prony(&values)?;
         let (mut differences, mut has_errors) = (Vec::new(), false);
-        for (curve, (part, all)) in problem.parts.iter().zip(&whole.parts).enumerate() {
-            let samples = whole.samples(curve, &values, &prony)?;
-            let force = whole.measured(curve, &values, samples.iter().map(|sample| sample.force));
-            let residuals: Vec<f64> = all.curve.force.iter().zip(&force).map(|(data, force)| data - force).collect();
+        for (curve, part) in problem.parts.iter().enumerate() {
+            let (samples, force, residuals) = whole.response(curve, &values, &prony)?;
             has_errors |= is_error(&samples, &residuals);
             let coarse = problem.force(curve, &values, &prony)?;
-            differences.push(means(&force, part.len()).iter().zip(coarse).map(|(fine, coarse)| fine - coarse).collect());
+            differences
+                .push(means(&force, part.len()).iter().zip(coarse).map(|(fine, coarse)| fine - coarse).collect());
         }
         let (differences, jacobian) = (problem.white(differences), problem.matrix(&slopes));
         let inverse = inverse_gram(&jacobian, 1e-13)?;
