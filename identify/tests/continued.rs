@@ -52,7 +52,9 @@ fn fitted(law: &str, seed: u64) -> (Fit, Vec<f64>, f64) {
 fn bands_beyond_a_curve_hold_the_law_or_say_that_it_is_not_known() {
     let count = from_environment("CONTINUED", 4);
     for law in ["Maxwell", "Zener", "Prony", "power", "power solid", "stretched", "fractional"] {
-        if std::env::var("LAW").is_ok_and(|only| only != law) { continue; }
+        if std::env::var("LAW").is_ok_and(|only| only != law) {
+            continue;
+        }
         let (mut missed, mut unknown, mut determined) = (BEYOND.map(|_| Vec::new()), BEYOND.map(|_| 0), Vec::new());
         for seed in 0..count {
             let (fit, values, length) = fitted(law, seed);
