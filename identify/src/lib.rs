@@ -50,6 +50,7 @@ mod identification;
 mod model;
 mod noise;
 mod parameters;
+mod part;
 #[cfg(feature = "plot")]
 mod plot;
 mod problem;

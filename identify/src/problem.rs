@@ -7,13 +7,14 @@ use faer::Mat;
 
 use crate::error::{Error, Result};
 use crate::experiment::Curve;
-use crate::forward::{Cycle, LANES, PLAIN, Real, Sample, Tip};
+use crate::forward::{Cycle, LANES, PLAIN, Real, Sample};
 use crate::model::{Model, Scale};
-use crate::noise::{Noise, Whitening};
+use crate::noise::Noise;
 use crate::parameters::{Chosen, Kind, Parameter, Property};
+use crate::part::Part;
 use crate::protocol::Protocol;
 use crate::series::Prony;
-use crate::statistics::{means, square};
+use crate::statistics::square;
 
 /// Least share of a modulus that relaxes.
 const LEAST_SHARE: f64 = 1e-12;
@@ -26,73 +27,6 @@ const ENOUGH: [f64; 2] = [1e-10, 1e-4];
 const EXACT: f64 = 1e-18;
 /// Width of coordinates over which derivatives of parameters are taken.
 pub(crate) const WIDTH: f64 = 1e-5;
-
-/// One curve of a problem.
-#[derive(Clone, Debug)]
-pub(crate) struct Part {
-    /// Experiment and measured forces: zeros where none are measured yet.
-    pub(crate) curve: Curve,
-    pub(crate) whitening: Whitening,
-    /// Weight of the residuals made white.
-    pub(crate) scale: f64,
-    /// Weight of means of samples, whose noise is less.
-    weight: f64,
-    /// A further weight of each: below 1 for outliers.
-    pub(crate) outliers: Vec<f64>,
-    tip: Tip,
-    /// Speed of the drive at each sample \[m/s\].
-    speed: Vec<f64>,
-}
-
-impl Part {
-    fn new(index: usize, curve: Curve, noise: &Noise) -> Result<Part> {
-        let whitening = Whitening::of(noise)?;
-        let Protocol { times, drive } = &curve.experiment.protocol;
-        let last = times.len() - 1;
-        let speed = |k: usize| {
-            let [a, b] = [k.saturating_sub(1), (k + 1).min(last)];
-            (drive[b] - drive[a]) / (times[b] - times[a])
-        };
-        let (speed, outliers) = ((0..=last).map(speed).collect(), vec![1.0; times.len()]);
-        let tip = Tip::new(index, &curve.experiment.tip, curve.experiment.surface);
-        Ok(Part { curve, whitening, scale: 1.0, weight: 1.0, outliers, tip, speed })
-    }
-
-    /// At most so many means of neighbouring samples, as if their noise were white.
-    fn thinned(&self, most: usize) -> Part {
-        let count = self.len().min(most);
-        let [outliers, speed] = [&self.outliers, &self.speed].map(|values| means(values, count));
-        let weight = self.weight * (self.len() as f64 / count as f64).sqrt();
-        let (curve, whitening) = (self.curve.means(count), Whitening::default());
-        Part { curve, whitening, weight, outliers, speed, ..self.clone() }
-    }
-
-    pub(crate) fn len(&self) -> usize {
-        self.speed.len()
-    }
-
-    /// Makes a column of the data white, with its weights.
-    pub(crate) fn whiten(&self, column: &mut [f64]) {
-        self.whitening.apply(column);
-        column.iter_mut().zip(&self.outliers).for_each(|(value, own)| *value *= self.scale * self.weight * own);
-    }
-
-    /// −ln of the determinant of the covariance, up to the factor σ².
-    pub(crate) fn log_weight(&self) -> f64 {
-        self.whitening.log_weight() + 2.0 * self.len() as f64 * (self.scale * self.weight).ln()
-    }
-
-    /// The force at a sample over a property in which it is linear.
-    fn force_over(&self, property: Property, sample: usize) -> f64 {
-        let Protocol { times, drive } = &self.curve.experiment.protocol;
-        match property {
-            Property::Drift => times[sample] - times[0],
-            Property::Tilt => drive[sample] - drive[0],
-            Property::Drag => self.speed[sample],
-            _ => 1.0,
-        }
-    }
-}
 
 /// All curves, and the parameters of their forces.
 #[derive(Clone, Debug)]

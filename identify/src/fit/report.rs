@@ -6,12 +6,13 @@ use viscocontact::contact::StepReport;
 use viscocontact::load::Load;
 use viscocontact::states::StatesContact;
 
+use super::scatter::is_error;
 use crate::error::{Error, Result};
 use crate::experiment::Curve;
 use crate::fit::{Estimate, Fit};
 use crate::model::Model;
 use crate::segments::BLOCK;
-use crate::statistics::{line, mean};
+use crate::statistics::{line, mean, scatter};
 
 /// What a fit shows that a user should know.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -125,8 +126,9 @@ impl Fit {
                 warnings.push(FitWarning::Correlation { curve });
             }
             warnings.extend(self.pull_off(of, curve).map(|force| FitWarning::PullOff { curve, force }));
-            let error = self.drive_error(of, curve);
-            warnings.extend(error.map(|scatter| FitWarning::DriveError { curve, scatter }));
+            if is_error(self.samples(curve), self.residuals(curve)) {
+                warnings.push(FitWarning::DriveError { curve, scatter: scatter(of.experiment.protocol.drive()) });
+            }
             warnings.extend(self.contact_warnings(curve));
         }
         let ([shortest, longest], of_material) = (self.problem.window, self.model().parameters());

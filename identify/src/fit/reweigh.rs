@@ -124,13 +124,14 @@ fn correlation(residuals: &[f64], jacobian: &Mat<f64>, first: usize) -> [f64; 2]
     if points <= count || square(residuals) == 0.0 {
         return [0.0; 2];
     }
-    let tried = (0..=MEMORIES).map(|k| {
-        let (memory, mut columns) = (MEMORY * k as f64, columns.clone());
-        columns.iter_mut().for_each(|column| difference(column, memory));
-        let phi = least(CORRELATIONS[0], CORRELATIONS[1], TRIED, |phi| unlikelihood(&columns, phi));
-        (unlikelihood(&columns, phi) + if memory > 0.0 { CLEARLY } else { 0.0 }, [phi, memory])
-    });
-    let tried: Vec<_> = tried.collect();
+    let tried: Vec<_> = (0..=MEMORIES)
+        .map(|k| {
+            let (memory, mut columns) = (MEMORY * k as f64, columns.clone());
+            columns.iter_mut().for_each(|column| difference(column, memory));
+            let phi = least(CORRELATIONS[0], CORRELATIONS[1], TRIED, |phi| unlikelihood(&columns, phi));
+            (unlikelihood(&columns, phi) + if memory > 0.0 { CLEARLY } else { 0.0 }, [phi, memory])
+        })
+        .collect();
     let (least, [_, memory]) = tried.iter().fold((f64::INFINITY, [0.0; 2]), |a, b| if b.0 < a.0 { *b } else { a });
     // of memories that are as likely, the longest: with a shorter one deviations are too small
     let margin = if memory > 0.0 { ALIKE } else { 0.0 };

@@ -1,9 +1,6 @@
 //! Noise of a drive that the force does not follow.
 
-use super::Fit;
-use crate::experiment::Curve;
 use crate::forward::Sample;
-use crate::statistics::scatter;
 
 /// Share of its scatter that the force of a drive with errors of measurement does not show, at least.
 const UNSEEN: f64 = 0.5;
@@ -26,11 +23,4 @@ pub(super) fn is_error(samples: &[Sample], residuals: &[f64]) -> bool {
         variance += 35.0 / 18.0 * (expected * unseen).powi(2);
     }
     product > UNSEEN * square && product > CERTAIN * variance.sqrt()
-}
-
-impl Fit {
-    /// The scatter of the drive of a curve \[m\], if it is an error of its measurement.
-    pub(super) fn drive_error(&self, of: &Curve, curve: usize) -> Option<f64> {
-        is_error(self.samples(curve), self.residuals(curve)).then(|| scatter(of.experiment.protocol.drive()))
-    }
 }
