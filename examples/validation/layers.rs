@@ -9,7 +9,13 @@ use crate::claim::{Checked, Outcome};
 const REFERENCE: &str = "integral equation of Lebedev & Ufliand 1958";
 
 /// Force under an approach on a layer bonded to a rigid base, over the modulus E*.
-fn press(shape: &dyn Geometry, thickness: f64, nu: f64, (cells, length): (usize, f64), approach: f64) -> Result<f64> {
+pub fn press(
+    shape: &dyn Geometry,
+    thickness: f64,
+    nu: f64,
+    (cells, length): (usize, f64),
+    approach: f64,
+) -> Result<f64> {
     let grid = Grid::square(cells, length)?;
     let material = Material::constant_poisson(Elastic::new(1.0e6)?, nu)?;
     let kernel = InfluenceKernel::layer(&grid, Layer::bonded_to_rigid(thickness, nu)?)?;

@@ -16,6 +16,7 @@ mod layers;
 mod march;
 #[path = "../support/scenes/noise.rs"]
 mod noise;
+mod published;
 #[path = "../support/scenes/rolling.rs"]
 mod rolling;
 mod sliding;
@@ -62,7 +63,7 @@ fn zener() -> Outcome {
     Ok(checked)
 }
 
-const SCENES: [fn() -> Outcome; 41] = [
+const SCENES: [fn() -> Outcome; 44] = [
     elastic::convolution,
     elastic::hertz,
     elastic::hertz_ellipse,
@@ -104,6 +105,9 @@ const SCENES: [fn() -> Outcome; 41] = [
     friction::oblique,
     friction::contact_example,
     friction::torsion,
+    published::rolling_polyamide,
+    published::rebound,
+    published::cartilage,
 ];
 
 /// The table, in Markdown.

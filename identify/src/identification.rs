@@ -156,9 +156,6 @@ impl Identification {
     pub fn of_curve(&self, curve: usize) -> Identification {
         let mut alone = self.clone();
         alone.chosen.0.iter_mut().for_each(|(_, each)| *each = each.of(curve));
-        if let Noise::Covariance(matrices) = &mut alone.noise {
-            *matrices = matrices.get(curve).cloned().into_iter().collect();
-        }
         alone
     }
 
@@ -176,7 +173,7 @@ impl Identification {
     }
 
     /// Cramér–Rao bounds of an experiment before it is made: the least standard deviations with which its parameters can be
-    /// found, with noise of standard deviation `sigma` \[N\]; 1, whatever is given, where [`Noise::Covariance`] has the noise in N². `values` are the
+    /// found, with noise of standard deviation `sigma` \[N\]. `values` are the
     /// expected parameters of the material.
     ///
     /// ```
@@ -204,17 +201,12 @@ impl Identification {
         problem.prony(&values)?.finite()?;
         let coordinates = problem.coordinates(&values);
         let inverse = inverse_gram(&problem.jacobian(&coordinates)?, 0.0)?;
-        let sigma = if let Noise::Covariance(_) = self.noise { 1.0 } else { sigma };
         Ok(Bounds::new(&problem, &inverse, &problem.scales(&coordinates), sigma))
     }
 
     pub(crate) fn sigma(&self) -> Option<f64> {
-        match self.noise {
-            Noise::Covariance(_) => Some(1.0),
-            // of residuals without outliers it is found
-            _ if self.robust => None,
-            _ => self.sigma,
-        }
+        // of residuals without outliers it is found
+        if self.robust { None } else { self.sigma }
     }
 
     /// Whether the autoregressive coefficient is fitted, too.
@@ -245,7 +237,6 @@ impl Identification {
         if let Some(sigma) = self.sigma {
             positive("standard deviation of the noise", sigma)?;
         }
-        self.noise.suits(curves.len())?;
         Ok(Problem { watch: self.watch.clone(), ..Problem::new(self.model, &self.chosen, curves, &self.noise)? })
     }
 

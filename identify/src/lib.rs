@@ -11,14 +11,13 @@
 //! | plan an experiment, and predict how well it determines a material | [`Protocol`], [`Identification::bounds`] |
 //! | fit a model to one or more curves | [`Identification::fit`] |
 //! | fit each curve of a force map, on several threads | [`Identification::fit_each`] |
-//! | find a spectrum without a model, and the decades that the data determine | [`Fit::free_spectrum`], [`Fit::decades`] |
+//! | find the decades of time that the data determine, whatever the model | [`Fit::decades`] |
 //! | compare models | [`ranked`] |
 //! | see what a misfit does to the modulus | [`Fit::variants`] |
 //! | cut a curve | [`Curve::within`], [`Curve::until_release`] |
 //! | check a fit by the stepper in space | [`Fit::verify`] |
 //! | tables and pictures | [`Summary`], `Fit::picture` with the feature `plot` |
 //! | the complex modulus of a small oscillation | [`Curve::complex_modulus`] |
-//! | creep or drainage of a pore fluid | [`TimeAtSize::scaling`] |
 //! | the usual formulas, for comparison | [`usual`] |
 //!
 //! The [`guide`] has programs from curves to materials, and what can go wrong in each.
@@ -41,7 +40,6 @@
 
 mod bounds;
 mod data;
-mod drainage;
 mod dynamic;
 mod error;
 mod experiment;
@@ -76,7 +74,6 @@ pub mod guide {
 
 pub use bounds::Bounds;
 pub use data::Recording;
-pub use drainage::{Scaling, TimeAtSize, Verdict};
 pub use dynamic::ComplexModulus;
 pub use error::{Error, Result};
 pub use experiment::{Curve, Experiment};
@@ -88,7 +85,7 @@ pub use noise::Noise;
 pub use parameters::{Nuisance, PerCurve};
 pub use protocol::{Protocol, ProtocolBuilder};
 pub use results::Summary;
-pub use spectrum::{Decade, FreeSpectrum};
+pub use spectrum::Decade;
 pub use verify::Verification;
 
 #[doc = include_str!("../README.md")]

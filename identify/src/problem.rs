@@ -9,16 +9,19 @@ use crate::error::{Error, Result};
 use crate::experiment::Curve;
 use crate::forward::{Cycle, LANES, PLAIN, Real, Sample};
 use crate::model::{Model, Scale};
-use crate::noise::{Noise, Whitening};
+use crate::noise::Noise;
 use crate::parameters::{Chosen, Kind, Parameter, Property};
-pub(crate) use crate::part::Part;
-use crate::part::ROUGH;
+use crate::part::Part;
 use crate::protocol::Protocol;
 use crate::series::Prony;
+use crate::statistics::square;
 use crate::watch::Watch;
 
 /// Least share of a modulus that relaxes.
 const LEAST_SHARE: f64 = 1e-12;
+/// Means of neighbouring samples of a curve with which a search begins, and with which it ends.
+const ROUGH: usize = 128;
+pub(crate) const LONG: usize = 2048;
 /// A search ends with the step that reduces the sum of squares by less than this fraction; one with few samples, early.
 const ENOUGH: [f64; 2] = [1e-10, 1e-4];
 /// Residuals are rounding below this fraction of the squared data.
@@ -31,6 +34,8 @@ pub(crate) const WIDTH: f64 = 1e-5;
 pub(crate) struct Problem {
     pub(crate) model: Model,
     pub(crate) parts: Vec<Part>,
+    /// The problem of all samples, where those of the parts are means.
+    pub(crate) whole: Option<Arc<Problem>>,
     pub(crate) parameters: Vec<Parameter>,
     /// Shortest interval between samples and longest curve \[s\].
     pub(crate) window: [f64; 2],
@@ -56,6 +61,7 @@ impl Problem {
         Ok(Problem {
             model,
             parts,
+            whole: None,
             parameters,
             window,
             enough: ENOUGH[0],
@@ -64,12 +70,30 @@ impl Problem {
         })
     }
 
-    /// The same problem with few samples, on which a search is cheap; `None` where there are few, or their noise is given by a matrix.
-    pub(crate) fn thinned(&self) -> Option<Problem> {
-        let is_long = self.parts.iter().any(|part| part.len() > ROUGH);
-        let is_simple = self.parts.iter().all(|part| matches!(part.whitening, Whitening::Autoregressive(_)));
-        let parts = || self.parts.iter().map(Part::thinned).collect();
-        (is_long && is_simple).then(|| Problem { parts: parts(), enough: ENOUGH[1], ..self.clone() })
+    /// The same problem with few samples, on which a search is cheap; `None` where there are few.
+    pub(crate) fn rough(&self) -> Option<Problem> {
+        Some(Problem { enough: ENOUGH[1], ..self.thinned(ROUGH)? })
+    }
+
+    /// The same problem with at most so many means of neighbours of each curve; `None` where there are no more samples.
+    pub(crate) fn thinned(&self, most: usize) -> Option<Problem> {
+        let is_long = self.parts.iter().any(|part| part.len() > most);
+        let parts = || self.parts.iter().map(|part| part.thinned(most)).collect();
+        is_long.then(|| Problem { parts: parts(), whole: None, ..self.clone() })
+    }
+
+    /// The same problem with all samples.
+    pub(crate) fn whole(&self) -> &Problem {
+        self.whole.as_deref().unwrap_or(self)
+    }
+
+    /// Share of the information on a coordinate that means of neighbours have lost, by the variance of its slopes within a mean; the maximum of all.
+    pub(crate) fn lost(&self, slopes: &[Vec<f64>]) -> f64 {
+        let of = |column: &Vec<f64>| {
+            let change: f64 = column.windows(2).map(|pair| (pair[1] - pair[0]).powi(2) / 12.0).sum();
+            if change > 0.0 { change / square(column) } else { 0.0 }
+        };
+        if self.whole.is_none() { 0.0 } else { slopes.iter().map(of).fold(0.0, f64::max) }
     }
 
     /// The same problem with a simpler model; `None` where parameters of the material are given.
@@ -241,6 +265,19 @@ impl Problem {
         contact.enumerate().map(of).collect()
     }
 
+    /// Contact, force and residuals of a curve at each sample.
+    pub(crate) fn response(
+        &self,
+        curve: usize,
+        values: &[f64],
+        prony: &Prony,
+    ) -> Result<(Vec<Sample>, Vec<f64>, Vec<f64>)> {
+        let samples = self.samples(curve, values, prony)?;
+        let force = self.measured(curve, values, samples.iter().map(|sample| sample.force));
+        let residuals = self.parts[curve].curve.force.iter().zip(&force).map(|(data, force)| data - force).collect();
+        Ok((samples, force, residuals))
+    }
+
     /// The data of a curve without offset, drift, tilt and drag.
     pub(crate) fn bare(&self, curve: usize, values: &[f64]) -> Vec<f64> {
         let data = &self.parts[curve].curve.force;
@@ -278,8 +315,12 @@ impl Problem {
 
     /// Derivatives of the residuals by the free coordinates.
     pub(crate) fn jacobian(&self, coordinates: &[f64]) -> Result<Mat<f64>> {
-        let slopes = self.slopes(coordinates)?;
-        Ok(Mat::from_fn(self.len(), slopes.len(), |k, j| slopes[j][k]))
+        Ok(self.matrix(&self.slopes(coordinates)?))
+    }
+
+    /// A matrix of columns of the data.
+    pub(crate) fn matrix(&self, columns: &[Vec<f64>]) -> Mat<f64> {
+        Mat::from_fn(self.len(), columns.len(), |k, j| columns[j][k])
     }
 
     /// Derivatives of the residuals, a column for each free coordinate.

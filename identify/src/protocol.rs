@@ -134,30 +134,6 @@ impl Protocol {
         Protocol::new(times, drive?)
     }
 
-    /// The drive of this protocol at `samples` equal intervals, as an instrument records it: a corner between two samples is
-    /// cut.
-    ///
-    /// # Errors
-    /// If there are no samples, or more than 1e8.
-    pub fn resampled(&self, samples: usize) -> Result<Protocol> {
-        count_within("samples", samples, (1..=MOST_SAMPLES as usize).contains(&samples), "from 1 to 1e8")?;
-        let [first, last] = [self.times[0], self.times[self.times.len() - 1]];
-        let time = |k: usize| if k == samples { last } else { first + (last - first) * k as f64 / samples as f64 };
-        let times: Vec<f64> = (0..=samples).map(time).collect();
-        let drive = times.iter().map(|&time| self.drive_at(time)).collect();
-        Protocol::new(times, drive)
-    }
-
-    /// The drive at any time \[m\]: constant before the first time and after the last.
-    pub fn drive_at(&self, time: f64) -> f64 {
-        let after = self.times.partition_point(|&other| other <= time);
-        if after == 0 || after == self.times.len() {
-            return self.drive[after.saturating_sub(1)];
-        }
-        let share = (time - self.times[after - 1]) / (self.times[after] - self.times[after - 1]);
-        (1.0 - share) * self.drive[after - 1] + share * self.drive[after]
-    }
-
     /// The times \[s\].
     pub fn times(&self) -> &[f64] {
         &self.times

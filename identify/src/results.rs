@@ -33,8 +33,7 @@ pub struct Summary {
 }
 
 /// Columns of a table of results.
-const COLUMNS: &str =
-    "model,aicc,parameter,value,unit,deviation,scale of deviation,robust deviation,lower 95 %,upper 95 %,warnings";
+const COLUMNS: &str = "model,aicc,parameter,value,unit,deviation,scale of deviation,lower 95 %,upper 95 %,warnings";
 
 /// The name of the model, without its settings.
 impl fmt::Display for Model {
@@ -119,9 +118,9 @@ impl Summary {
         for Summary { model, aicc, estimates, warnings, .. } in summaries {
             let model = quoted(&model.to_string());
             let warnings = quoted(&warnings.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "));
-            for Estimate { name, value, scale, deviation, robust_deviation, interval: [low, high], .. } in estimates {
+            for Estimate { name, value, scale, deviation, interval: [low, high], .. } in estimates {
                 let (name, unit) = (quoted(name), unit(name));
-                let numbers = format!("{value},{unit},{deviation},{scale:?},{robust_deviation},{low},{high}");
+                let numbers = format!("{value},{unit},{deviation},{scale:?},{low},{high}");
                 lines.push(format!("{model},{aicc},{name},{numbers},{warnings}"));
             }
         }

@@ -7,7 +7,7 @@ use viscocontact::numeric::least;
 use crate::error::{Result, count_within};
 use crate::experiment::{Curve, Experiment};
 use crate::protocol::Protocol;
-use crate::statistics::{line, mean, range, scatter};
+use crate::statistics::{line, mean, means, range, scatter};
 
 /// Drives that differ from the greatest by less than this share of the range are at the top of a segment.
 const TOP: f64 = 1e-2;
@@ -89,6 +89,23 @@ impl Curve {
     /// Mean force of the first twentieth of the samples up to the top.
     fn base_line(&self) -> f64 {
         mean(&self.force[..(self.top(TOP).0 / 20).max(1)])
+    }
+
+    /// Means of so many neighbouring samples of time, drive and force: for drives whose noise is an error of measurement.
+    ///
+    /// # Errors
+    /// If there are not two means of at least one sample.
+    pub fn averaged(&self, neighbours: usize) -> Result<Curve> {
+        let allowed = "from 1 to half the samples of the curve";
+        count_within("samples of a mean", neighbours, (1..=self.force.len() / 2).contains(&neighbours), allowed)?;
+        Ok(self.means(self.force.len() / neighbours))
+    }
+
+    /// So many means of neighbours.
+    pub(crate) fn means(&self, count: usize) -> Curve {
+        let Protocol { times, drive } = &self.experiment.protocol;
+        let protocol = Protocol { times: means(times, count), drive: means(drive, count) };
+        Curve { experiment: Experiment { protocol, ..self.experiment.clone() }, force: means(&self.force, count) }
     }
 
     fn samples(&self, samples: Range<usize>) -> Result<Curve> {

@@ -2,9 +2,9 @@
 
 use statrs::distribution::{ChiSquared, ContinuousCDF, StudentsT};
 
-/// Standard deviations of a normal distribution within which 95 % of the draws are.
+/// A normal variable is within so many standard deviations in 95 of 100 cases.
+#[cfg(feature = "plot")]
 pub(crate) const WITHIN_95: f64 = 1.959963984540054;
-
 /// Least and greatest value.
 pub(crate) fn range(values: &[f64]) -> [f64; 2] {
     values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &value| [low.min(value), high.max(value)])
@@ -18,6 +18,11 @@ pub(crate) fn square(values: &[f64]) -> f64 {
 /// Arithmetic mean.
 pub(crate) fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
+}
+
+/// So many means of neighbouring values.
+pub(crate) fn means(values: &[f64], count: usize) -> Vec<f64> {
+    (0..count).map(|k| mean(&values[k * values.len() / count..(k + 1) * values.len() / count])).collect()
 }
 
 /// Standard deviation of the noise of some data, from second differences.

@@ -48,12 +48,13 @@ fn a_protocol_and_its_load_history_agree_between_samples() -> Result<()> {
     for k in -3..90 {
         let time = 0.05 * f64::from(k);
         let Load::Approach { approach, .. } = history.at(time) else { panic!("the depth is driven") };
-        assert!((approach - protocol.drive_at(time)).abs() < 1e-20);
+        let (times, drive) = (protocol.times(), protocol.drive());
+        let after = times.partition_point(|other| *other <= time).clamp(1, times.len() - 1);
+        let share = ((time - times[after - 1]) / (times[after] - times[after - 1])).clamp(0.0, 1.0);
+        assert!((approach - (1.0 - share) * drive[after - 1] - share * drive[after]).abs() < 1e-20);
     }
     let back = Protocol::sampled(&history, protocol.times().to_vec())?;
     assert_eq!(back, protocol);
-    let equal = protocol.resampled(36)?;
-    assert_eq!((equal.times().len(), equal.drive()[36]), (37, 0.5e-6));
     Ok(())
 }
 
@@ -106,8 +107,6 @@ fn nonsense_is_refused_with_the_field_and_its_range() -> Result<()> {
         (Protocol::staircase(&[], 1.0, 1.0, 0.1), "depths of the staircase"),
         (Protocol::new(vec![0.0], vec![1.0]), "times of the protocol"),
         (Protocol::new(vec![f64::NAN, 1.0], vec![1.0; 2]), "time"),
-        (Protocol::trapezoid(1.0, [1.0; 3], 0.1)?.resampled(0), "samples"),
-        (Protocol::trapezoid(1.0, [1.0; 3], 0.1)?.resampled(1_000_000_000_000_000), "samples"),
         (Protocol::builder(0.0, 0.1).oscillate(0.0, 1.0, 3, 8).build(), "amplitude"),
         (Protocol::builder(0.0, 0.1).oscillate(1.0, 1.0, 0, 8).build(), "periods"),
         (Protocol::builder(0.0, 0.1).oscillate(1.0, 1.0, 3, 3).build(), "samples of a period"),

@@ -100,7 +100,9 @@ fn intervals_between_samples_cost_little() {
             let at = |t: f64| 1.0e-6 * (2.0 * t).min(1.0).min(3.0 - t) - 0.1e-6;
             let drive: Vec<f64> = times.iter().map(|&t| at(t) + 1e-9 * normal(&mut rng)).collect();
             let protocol = Protocol::new(times, drive).unwrap();
-            let fine = protocol.resampled(16 * count as usize).unwrap();
+            let finer = (0..=16 * count).map(|k| 3.0 * f64::from(k) / f64::from(16 * count)).collect();
+            let history = Experiment::new(protocol.clone(), tip.clone()).load_history().unwrap();
+            let fine = Protocol::sampled(&history, finer).unwrap();
             let experiment = |protocol: Protocol| Experiment::new(protocol, tip.clone()).with_spring(0.05).unwrap();
             let samples = zener.respond(&experiment(fine), &body).unwrap();
             let force = samples.iter().step_by(16).map(|sample| sample.force).collect();

@@ -2,9 +2,7 @@
 
 use viscocontact::prelude::*;
 use viscocontact::states::{ElasticStates, Reach, Sweep};
-use viscocontact_identify::{
-    Curve, Error, Experiment, FitWarning, Identification, Model, Noise, Nuisance, Protocol, ranked,
-};
+use viscocontact_identify::{Curve, Error, Experiment, FitWarning, Identification, Model, Nuisance, Protocol, ranked};
 
 use crate::random::{exact, generator, noisy, normal};
 
@@ -54,35 +52,6 @@ fn curves_are_fitted_together() {
     // the scene has no units: only its slope of 1.3 and its modulus of 1 Pa are warned of
     let of_contact = |warning: &FitWarning| matches!(warning, FitWarning::Contact { .. });
     assert!(both.warnings().iter().all(of_contact), "{:?}", both.warnings());
-}
-
-/// A given covariance of independent noise is white noise of known size; one of autoregressive noise is autoregressive noise.
-#[test]
-fn a_given_covariance_is_the_noise_it_describes() {
-    let curve = curve(1.0, 150, 0.01, 5);
-    let (count, sigma) = (curve.force().len(), 2e-3);
-    let fit = |noise: Noise| Identification::new(Model::Zener).noise(noise).fit(std::slice::from_ref(&curve)).unwrap();
-    for phi in [0.0, 0.6_f64] {
-        let entry = |k: usize| sigma * sigma * phi.powi((k / count).abs_diff(k % count) as i32) / (1.0 - phi * phi);
-        let given = fit(Noise::Covariance(vec![(0..count * count).map(entry).collect()]));
-        let known = Noise::AutoregressiveWith(phi);
-        let other = Identification::new(Model::Zener).noise(known).known_sigma(sigma);
-        let other = other.fit(std::slice::from_ref(&curve)).unwrap();
-        for (a, b) in given.estimates().iter().zip(other.estimates()) {
-            assert!((a.value / b.value - 1.0).abs() < 1e-6, "φ = {phi}: {a:?} {b:?}");
-            assert!((a.deviation / b.deviation - 1.0).abs() < 1e-4, "φ = {phi}: {a:?} {b:?}");
-        }
-        assert!((given.aicc() - other.aicc()).abs() < 1e-3, "{} {}", given.aicc(), other.aicc());
-        // a given coefficient is none that was fitted
-        assert!((given.probability() / other.probability() - 1.0).abs() < 1e-3, "φ = {phi}");
-    }
-    // each curve has its own, fitted alone or not
-    let quiet = (0..count * count).map(|k| if k % (count + 1) == 0 { 1e-4 } else { 0.0 }).collect::<Vec<f64>>();
-    let loud: Vec<f64> = quiet.iter().map(|entry| 100.0 * entry).collect();
-    let (zener, both) = (Identification::new(Model::Zener), [curve.clone(), curve.clone()]);
-    let each = zener.noise(Noise::Covariance(vec![quiet, loud])).fit_each(&both, |_| {});
-    let [quiet, loud] = [0, 1].map(|k| each[k].as_ref().unwrap().estimate("E0").unwrap().deviation);
-    assert!((loud / quiet / 10.0 - 1.0).abs() < 1e-6, "{quiet} {loud}");
 }
 
 /// A curve of an elastic body, fitted by models that contain it at the limit E0 = Einf: their modulus is as uncertain as that of the elastic model, and

@@ -2,9 +2,10 @@
 
 mod beyond;
 mod bounds;
+mod continued;
 mod coverage;
 mod data;
-mod drainage;
+mod drive;
 mod dynamic;
 mod instruments;
 mod nested;

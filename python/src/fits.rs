@@ -49,8 +49,6 @@ getters! {Estimate.of, of:
     /// Standard deviation on its `scale`: relative for moduli, times and stiffness, of ln(x/(1 − x)) for exponents, else in the unit of the value. Infinite
     /// of a parameter without effect at its `limit`.
     deviation: f64 = of.deviation;
-    /// The same from the scatter of the residuals, without an assumption on the noise.
-    robust_deviation: f64 = of.robust_deviation;
     /// Interval of 95 %.
     interval: (f64, f64) = of.interval.into();
     /// The scale of the deviations: "logarithm", "logit" (ln(x/(1 − x)), of exponents) or "linear".
@@ -77,7 +75,7 @@ pub struct Fit {
 
 /// A fit in a pickle: what makes it again, and the identification, its curves, the one of a list that it was, and the numbers found.
 type Pickled<'py> = (Bound<'py, PyAny>, (Py<Identification>, Vec<Curve>, Option<usize>, State));
-type State = (Vec<f64>, Vec<(f64, Option<f64>, Vec<f64>)>, usize, Option<f64>);
+type State = (Vec<f64>, Vec<(f64, [f64; 2], Vec<f64>)>, bool, usize, Option<f64>);
 
 #[pymethods]
 impl Fit {
@@ -105,9 +103,9 @@ impl Fit {
         of_curve: Option<usize>,
         state: State,
     ) -> PyResult<Fit> {
-        let (coordinates, noise, iterations, contained) = state;
+        let (coordinates, noise, means, iterations, above) = state;
         let (curves, tips) = several(curves)?;
-        let state = id::FitState::new(coordinates, noise, iterations, contained);
+        let state = id::FitState::new(coordinates, noise, means, iterations, above);
         let own = of_curve.map_or_else(|| by.get().of.clone(), |curve| by.get().of.of_curve(curve));
         Ok(Fit { fit: state.fit(&own, &curves).or_raise()?, by: by.unbind(), of_curve, tips })
     }
@@ -116,7 +114,7 @@ impl Fit {
         let curve = |(of, tip): (&id::Curve, &Py<ElasticStates>)| Curve { of: of.clone(), tip: tip.clone_ref(py) };
         let curves = self.fit.curves().iter().zip(&self.tips).map(curve).collect();
         let state = self.fit.state();
-        let state = (state.coordinates, state.noise, state.iterations, state.contained);
+        let state = (state.coordinates, state.noise, state.means, state.iterations, state.above);
         let again = py.get_type::<Fit>().getattr("_again")?;
         Ok((again, (self.by.clone_ref(py), curves, self.of_curve, state)))
     }
@@ -174,22 +172,6 @@ impl Fit {
     #[pyo3(signature = (name, confidence=0.95))]
     fn profile_interval(&self, py: Python<'_>, name: &str, confidence: f64) -> PyResult<(f64, f64)> {
         self.watched(py, |fit| fit.profile_interval(name, confidence)).map(Into::into)
-    }
-
-    /// A spectrum without a model from the same curves: "equilibrium" [Pa], "times" [s] and "moduli" [Pa] of the terms, "smoothing", "sigma" [N]
-    /// and "forces", an array [N] for each curve.
-    fn free_spectrum<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let of = self.watched(py, id::Fit::free_spectrum)?;
-        let (times, moduli): (Vec<f64>, Vec<f64>) = of.terms.iter().copied().unzip();
-        let forces: Vec<_> = of.forces.into_iter().map(|force| force.into_pyarray(py)).collect();
-        Ok(dict! { py;
-            "equilibrium": of.equilibrium,
-            "times": times.into_pyarray(py),
-            "moduli": moduli.into_pyarray(py),
-            "smoothing": of.smoothing,
-            "sigma": of.sigma,
-            "forces": forces,
-        })
     }
 
     /// The decades of time that the curves determine: dicts of "times" [s], "modulus" that relaxes there [Pa], its "deviation" [Pa], and

@@ -244,18 +244,6 @@ pub fn ranked(fits: Vec<Bound<'_, PyAny>>) -> PyResult<Vec<(Bound<'_, Fit>, f64,
     Ok(ranked.into_iter().filter_map(place).collect())
 }
 
-/// Whether two relaxation times, each (time [s], standard deviation of its logarithm, contact area [m²]), agree with creep (equal times) or
-/// drainage of a pore fluid (times as the areas), at 95 %: "creep", "drainage", "undecided" or "neither".
-///
-/// >>> drainage_or_creep((0.8, 0.05, 1e-12), (3.1, 0.05, 4e-12))
-/// 'drainage'
-#[pyfunction]
-pub fn drainage_or_creep(one: (f64, f64, f64), other: (f64, f64, f64)) -> PyResult<String> {
-    let of = |(time, log_error, area): (f64, f64, f64)| id::TimeAtSize { time, log_error, area };
-    let scaling = of(one).scaling(of(other)).or_raise()?;
-    Ok(format!("{:?}", scaling.verdict).to_lowercase())
-}
-
 type Several = (Vec<id::Curve>, Vec<Py<ElasticStates>>);
 
 /// The curves of the crate, and their tips.

@@ -73,7 +73,7 @@ mod _native {
         friction::{FrictionContact, FrictionLimit, ShearLoad, Slides},
         grid::Grid,
         held::Times,
-        identify::{Identification, drainage_or_creep, ranked},
+        identify::{Identification, ranked},
         interrupt::forked,
         kernels::{InfluenceKernel, Layer},
         loads::{Load, LoadHistory},

@@ -313,9 +313,6 @@ def curve():
 
 def test_what_a_fit_determines(curve, tmp_path):
     fit = vc.Identification("zener", robust=True).fit(curve)
-    spectrum = fit.free_spectrum()
-    assert spectrum["equilibrium"] + spectrum["moduli"].sum() == pytest.approx(4000, rel=0.05)
-    assert len(spectrum["forces"]) == 1 and len(spectrum["forces"][0]) == len(curve)
     decades = fit.decades()
     assert any(decade["is_determined"] for decade in decades) and all(decade["times"][0] < decade["times"][1] for decade in decades)
     force, difference = fit.verify(vc.Grid(48, 6e-6), vc.Shape.sphere(5e-6))
@@ -335,7 +332,6 @@ def test_fits_are_ranked(curve):
     fits = [vc.Identification(model).fit(curve) for model in ("elastic", "zener")]
     (best, none, weight), (other, more, _) = vc.ranked([*fits, ValueError("failed")])
     assert best.model == "Zener" and none == 0 and weight > 0.99 and more > 0 and other.model == "Elastic"
-    assert vc.drainage_or_creep((0.8, 0.05, 1e-12), (0.81, 0.05, 4e-12)) == "creep"
 
 
 def test_contact_points_of_each_curve(curve):

@@ -33,7 +33,7 @@ def _columns(self):
     if isinstance(self, native.SlidingTable):
         return self.columns()
     if isinstance(self, native.Fit):
-        names = ("name", "value", "deviation", "robust_deviation", "scale", "limit")
+        names = ("name", "value", "deviation", "scale", "limit")
         rows = {name: [getattr(estimate, name) for estimate in self.estimates] for name in names}
         return rows | {"low": [each.interval[0] for each in self.estimates], "high": [each.interval[1] for each in self.estimates]}
     if isinstance(self, native.Recording):

@@ -31,6 +31,7 @@ fn fitted(is_creep: bool, table: &[(f64, f64)]) -> Result<CreepSeries> {
 fn judge(is_creep: bool) {
     let count = from_environment("BAD_ROWS", 100);
     let (mut right, mut warned, mut refused, mut silent, mut low, mut worst) = (0, 0, 0, 0, 0, f64::INFINITY);
+    let mut told = 0;
     for seed in 0..count {
         let (mut draw, mut noise) = (Draws::new(seed), noise(seed));
         let (relaxation, creep) = body(&mut draw);
@@ -47,7 +48,9 @@ fn judge(is_creep: bool) {
             times.map(|t| body.creep_compliance(t) / creep.compliance(t)).collect()
         };
         let error = |body: &CreepSeries| ratios(body).iter().map(|ratio| ratio.ln().abs()).fold(0.0, f64::max);
-        let of_clean = error(&fitted(is_creep, &clean).unwrap());
+        let of_clean = fitted(is_creep, &clean).unwrap();
+        told += u64::from(matches!(of_clean.report().warning(), Some(FitWarning::Outlier { .. })));
+        let of_clean = error(&of_clean);
         match fitted(is_creep, &table) {
             Err(Error::Table(TableError::WrongWay { .. })) => refused += 1,
             Err(error) => panic!("{seed}: {error}"),
@@ -72,9 +75,10 @@ fn judge(is_creep: bool) {
         }
     }
     println!(
-        "{right} right, {warned} warned, {refused} refused, {silent} silent of {count}; J at least {worst:.2}, below 0.8 in {low}"
+        "{right} right, {warned} warned, {refused} refused, {silent} silent of {count}; J at least {worst:.2}, below 0.8 in {low}; {told} clean tables warned of"
     );
-    assert!(12 * silent <= count && 30 * low <= count, "{silent} silent and {low} low of {count}");
+    assert!(25 * silent <= count && 30 * low <= count, "{silent} silent and {low} low of {count}");
+    assert!(10 * told <= count, "{told} clean tables of {count} have an outlier");
 }
 
 #[test]

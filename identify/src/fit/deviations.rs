@@ -7,8 +7,7 @@ use crate::bounds::inverse_gram;
 use crate::error::Result;
 use crate::model::Scale;
 use crate::parameters::Parameter;
-use crate::problem::{Part, Problem};
-use crate::statistics::square;
+use crate::problem::Problem;
 
 /// A parameter is at a limit if its coordinate would have to change by so much for an effect of one standard deviation: by a factor of e¹⁰.
 const NO_EFFECT: f64 = 10.0;
@@ -58,30 +57,4 @@ pub(super) fn limit(name: &str, value: f64, scale: f64) -> &'static str {
         name if name.starts_with("tau") => "a time without effect, or beyond the data",
         _ => "0",
     }
-}
-
-/// (JᵀJ)⁻¹ M (JᵀJ)⁻¹ with M the covariance of Σ Jₖ rₖ: correlations of neighbours are included with falling weights (W. K. Newey & K. D. West,
-/// 1987), over as many lags as is best for autoregressive residuals (D. W. K. Andrews, 1991). Each residual is divided by 1 less its leverage (J. G.
-/// MacKinnon & H. White, 1985).
-pub(super) fn sandwich(problem: &Problem, all: &[f64], jacobian: &Mat<f64>, inverse: &Mat<f64>) -> Mat<f64> {
-    let count = inverse.nrows();
-    let mut middle = Mat::<f64>::zeros(count, count);
-    let mut first = 0;
-    for len in problem.parts.iter().map(Part::len) {
-        let (residuals, slopes) = (&all[first..first + len], jacobian.subrows(first, len));
-        let leverage = |k: usize| slopes.row(k) * inverse * slopes.row(k).transpose();
-        let factors: Vec<f64> = (0..len).map(|k| residuals[k] / (1.0 - leverage(k)).max(0.1)).collect();
-        let scores = Mat::from_fn(len, count, |k, j| slopes[(k, j)] * factors[k]);
-        let product: f64 = residuals.windows(2).map(|pair| pair[0] * pair[1]).sum();
-        let rho = if square(residuals) > 0.0 { product / square(residuals) } else { 0.0 };
-        let lags = 1.1447 * (4.0 * rho * rho / (1.0 - rho * rho).powi(2) * len as f64).cbrt();
-        let lags = (lags.ceil() as usize).min(len / 3);
-        for lag in 0..=lags {
-            let weight = (1.0 - lag as f64 / (lags + 1) as f64) * if lag == 0 { 0.5 } else { 1.0 };
-            let product = scores.subrows(lag, len - lag).transpose() * scores.subrows(0, len - lag);
-            middle += faer::Scale(weight) * (&product + product.transpose());
-        }
-        first += len;
-    }
-    inverse * &middle * inverse
 }

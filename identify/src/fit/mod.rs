@@ -1,30 +1,34 @@
 //! What was identified.
 
+mod band;
 mod deviations;
 mod intervals;
 mod report;
 mod reweigh;
+mod scatter;
 mod search;
 mod state;
 mod variants;
 
 use std::ops::ControlFlow;
+use std::sync::OnceLock;
 use std::sync::atomic::Ordering;
 
-use faer::{Col, Mat};
+use faer::Mat;
 use viscocontact::rheology::Material;
 
 use crate::bounds::Bounds;
-use crate::error::{Error, Result, within};
+use crate::error::{Error, Result};
 use crate::experiment::{Curve, Experiment};
 use crate::forward::Sample;
 use crate::identification::Identification;
 use crate::model::{Model, Scale};
 use crate::parameters::Parameter;
-use crate::problem::{Part, Problem, WIDTH};
+use crate::part::Part;
+use crate::problem::Problem;
 use crate::series::Prony;
-use crate::statistics::{correlation_test, student};
-use deviations::{inverse, limit, robust_deviation, sandwich};
+use crate::statistics::{correlation_test, means, student};
+use deviations::{inverse, limit, robust_deviation};
 pub use report::{FitWarning, ranked};
 use search::Found;
 pub use state::FitState;
@@ -46,9 +50,6 @@ pub struct Estimate {
     pub scale: Scale,
     /// Standard deviation on that scale: relative for moduli, times and stiffness, of ln(α/(1 − α)) for exponents, in the unit of the value for the others.
     pub deviation: f64,
-    /// The same from the scatter of the residuals as it is, without the assumption on the noise (sandwich estimate, with the correlations
-    /// of neighbours after Newey & West 1987).
-    pub robust_deviation: f64,
     /// Interval of 95 % from the standard deviation.
     pub interval: [f64; 2],
     /// The limit at which the parameter is, if the data cannot tell it from there: then the model is a simpler one. A parameter that has
@@ -71,8 +72,8 @@ pub struct Fit {
     /// Covariance of the estimates, and of the coordinates.
     spread: Bounds,
     of_coordinates: Mat<f64>,
-    /// Which coordinates are at a limit.
-    limits: Vec<bool>,
+    /// Ends of profiles, for bands, and whether the data bound them.
+    ends: OnceLock<Vec<(Vec<f64>, bool)>>,
     samples: Vec<Vec<Sample>>,
     forces: Vec<Vec<f64>>,
     /// Measured less modelled force, by curve.
@@ -82,15 +83,18 @@ pub struct Fit {
     freedom: f64,
     sum: f64,
     iterations: usize,
-    /// The least sum of squares of a model that this one contains.
-    contained: Option<(Model, f64)>,
+    /// A model that this one contains, and its sum of squares over the least one.
+    above: Option<(Model, f64)>,
+    /// Share of the information that means of neighbours have lost.
+    lost: f64,
 }
 
 impl Fit {
     pub(crate) fn new(identification: &Identification, problem: Problem, found: Found) -> Result<Fit> {
-        let Found { minimum, contained } = found;
+        let Found { minimum, above } = found;
         let (coordinates, residuals, sum) = (&minimum.coordinates, &minimum.residuals, minimum.sum());
-        let jacobian = &problem.jacobian(coordinates)?;
+        let slopes = problem.slopes(coordinates)?;
+        let (jacobian, lost) = (&problem.matrix(&slopes), problem.lost(&slopes));
         let values = problem.values(coordinates);
         let prony = problem.prony(&values)?.finite()?;
         let (count, points) = (coordinates.len(), problem.len());
@@ -104,8 +108,6 @@ impl Fit {
         });
         let free: Vec<Parameter> = problem.free().cloned().collect();
         let scales = problem.scales(coordinates);
-        let (weighted, _) = inverse(&free, jacobian, sigma)?;
-        let sandwich = &scales * sandwich(&problem, residuals, jacobian, &weighted) * scales.transpose();
         let all = match identification.robust {
             true => &problem.without_outliers().jacobian(coordinates)?,
             false => jacobian,
@@ -113,10 +115,8 @@ impl Fit {
         let (inverse, limits) = inverse(&free, all, sigma)?;
         let spread = Bounds::new(&problem, &inverse, &scales, sigma);
         // of slow residuals so many are independent, and their standard deviation is known as that of half as many (F. E. Satterthwaite, 1946)
-        let independent = |part: &Part| {
-            let phi = part.whitening.correlation().unwrap_or_default();
-            0.5 * part.len() as f64 * (1.0 - phi) / (1.0 + phi)
-        };
+        let independent =
+            |part: &Part| 0.5 * part.len() as f64 * (1.0 - part.whitening.phi) / (1.0 + part.whitening.phi);
         let freedom = match identification.sigma() {
             _ if identification.fits_correlation() => problem.parts.iter().map(independent).sum::<f64>().min(freedom),
             Some(_) => 1e6,
@@ -136,22 +136,21 @@ impl Fit {
                 value,
                 scale: parameter.scale,
                 deviation,
-                robust_deviation: known(sandwich[(k, k)]),
                 interval: [-quantile, quantile].map(|quantile| parameter.scale.back(on_scale + quantile * deviation)),
                 limit: limits[k].then(|| limit(&parameter.name, value, scales[(k, k)])),
             }
         };
         let estimates = free.iter().enumerate().zip(at).map(estimate).collect();
         let (mut samples, mut forces, mut residuals) = (Vec::new(), Vec::new(), Vec::new());
-        for (curve, part) in problem.parts.iter().enumerate() {
-            let response = problem.samples(curve, &values, &prony)?;
-            let force = problem.measured(curve, &values, response.iter().map(|sample| sample.force));
-            residuals.push(part.curve.force.iter().zip(&force).map(|(data, force)| data - force).collect());
-            samples.push(response);
+        let whole = problem.whole();
+        for curve in 0..whole.parts.len() {
+            let (of_samples, force, rest) = whole.response(curve, &values, &prony)?;
+            samples.push(of_samples);
             forces.push(force);
+            residuals.push(rest);
         }
         let of_coordinates = inverse * faer::Scale(sigma * sigma);
-        let curves = problem.parts.iter().map(|part| part.curve.clone()).collect();
+        let curves = whole.parts.iter().map(|part| part.curve.clone()).collect();
         let (identification, iterations) = (identification.clone(), minimum.steps);
         Ok(Fit {
             identification,
@@ -163,7 +162,7 @@ impl Fit {
             estimates,
             spread,
             of_coordinates,
-            limits,
+            ends: OnceLock::new(),
             samples,
             forces,
             residuals,
@@ -171,7 +170,8 @@ impl Fit {
             freedom,
             sum,
             iterations,
-            contained,
+            above,
+            lost,
         })
     }
 
@@ -212,46 +212,6 @@ impl Fit {
         self.spread.correlation(one, other)
     }
 
-    /// The contact modulus E*(t) at a time after a sudden step \[Pa\], by the law of the model: NaN where the time is negative or not finite. What the
-    /// data show lies between their shortest sampling interval and the length of the longest curve; at other times the law is extrapolated.
-    pub fn modulus(&self, t: f64) -> f64 {
-        self.modulus_of(&self.values, t)
-    }
-
-    /// The law of the model for some values of all parameters.
-    fn modulus_of(&self, values: &[f64], t: f64) -> f64 {
-        let model = self.model();
-        model.modulus(&values[..model.parameters().len()], t).unwrap_or(f64::NAN)
-    }
-
-    /// The contact modulus at a time with its standard deviation, relative: \[Pa, 1\]. The deviation is infinite at times at which the modulus
-    /// depends on a parameter that has run to its limit.
-    pub fn modulus_band(&self, t: f64) -> [f64; 2] {
-        let coordinates = self.problem.coordinates(&self.values);
-        let moved = |column, width| self.modulus_of(&self.problem.moved(&coordinates, column, width), t).ln();
-        // derivatives of ln E by the coordinates, which may all be moved either way
-        if t.is_nan() || t < 0.0 {
-            return [f64::NAN; 2];
-        }
-        let slopes = Col::from_fn(coordinates.len(), |column| {
-            let slope = (moved(column, WIDTH) - moved(column, -WIDTH)) / (2.0 * WIDTH);
-            if slope.is_finite() { slope } else { 0.0 }
-        });
-        let is_known = (0..slopes.nrows()).all(|k| !self.limits[k] || slopes[k].abs() < LITTLE);
-        let variance = slopes.transpose() * &self.of_coordinates * &slopes;
-        [self.modulus(t), if is_known { variance.max(0.0).sqrt() } else { f64::INFINITY }]
-    }
-
-    /// The shear modulus G(t) = E*(t) (1 − ν)/2 for a known constant Poisson's ratio \[Pa\]. One contact cannot tell ν.
-    ///
-    /// # Errors
-    /// If the ratio is outside (−1, 0.5], or the time is negative or not finite.
-    pub fn shear_modulus(&self, t: f64, poisson: f64) -> Result<f64> {
-        within("Poisson's ratio", poisson, poisson > -1.0 && poisson <= 0.5, "> -1 and at most 0.5")?;
-        within("time", t, t >= 0.0, "finite and >= 0")?;
-        Ok(0.5 * self.modulus(t) * (1.0 - poisson))
-    }
-
     /// The material, against a rigid tip, for contacts of the main crate: incompressible, with the identified contact modulus. Its contact
     /// with a rigid body is the contact of every material of this modulus. Its series is that of the fit: steps beyond the times of the data, from
     /// their shortest sampling interval to the length of the longest curve, warn that the material is extrapolated.
@@ -288,7 +248,7 @@ impl Fit {
         self.curves.get(curve).map(Curve::experiment).ok_or(none)
     }
 
-    /// Standard deviation of the noise \[N\]: of its independent part, if it is autoregressive. A factor of the given covariance, which is 1.
+    /// Standard deviation of the noise \[N\]: of its independent part, if it is autoregressive.
     /// Of several curves, the geometric mean; [`Fit::sigma_of`] is that of one.
     pub fn sigma(&self) -> f64 {
         self.sigma
@@ -306,12 +266,23 @@ impl Fit {
 
     /// The autoregressive coefficient of the noise of a curve, if it has one.
     pub fn autoregression_of(&self, curve: usize) -> Option<f64> {
-        self.problem.parts.get(curve)?.whitening.correlation()
+        Some(self.problem.parts.get(curve)?.whitening.phi).filter(|phi| *phi != 0.0)
+    }
+
+    /// The order d of the long memory that the noise of a curve has beside its autoregressive coefficient: 0 if it has none, ½ of pink noise.
+    pub fn memory_of(&self, curve: usize) -> f64 {
+        self.problem.parts.get(curve).map_or(0.0, |part| part.whitening.memory)
     }
 
     /// Iterations of the search.
     pub fn iterations(&self) -> usize {
         self.iterations
+    }
+
+    /// Share of the information on a parameter that is lost where a curve of more than 2048 samples, in noise that is white or of unknown correlation, is
+    /// fitted in so many means of neighbours: the maximum of all parameters. Where it is above 1 %, and of shorter curves, each sample is fitted, and it is 0.
+    pub fn information_lost(&self) -> f64 {
+        self.lost
     }
 
     /// Work of the search: exponentials that were advanced by a sample, each derivative counted.
@@ -327,8 +298,12 @@ impl Fit {
     /// Probability of correlations of the residuals as great, if the model is right (Ljung & Box 1978): a small one means that the model is wrong, of
     /// the material or of the noise.
     pub fn probability(&self) -> f64 {
-        let mut white = self.residuals.clone();
-        white.iter_mut().zip(&self.problem.parts).for_each(|(residuals, part)| part.whiten(residuals));
+        let white = |(residuals, part): (&Vec<f64>, &Part)| {
+            let mut white = means(residuals, part.len());
+            part.whiten(&mut white);
+            white
+        };
+        let white: Vec<_> = self.residuals.iter().zip(&self.problem.parts).map(white).collect();
         correlation_test(&white, if self.identification.fits_correlation() { self.curves.len() } else { 0 })
     }
 

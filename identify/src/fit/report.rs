@@ -6,12 +6,13 @@ use viscocontact::contact::StepReport;
 use viscocontact::load::Load;
 use viscocontact::states::StatesContact;
 
+use super::scatter::is_error;
 use crate::error::{Error, Result};
 use crate::experiment::Curve;
 use crate::fit::{Estimate, Fit};
 use crate::model::Model;
 use crate::segments::BLOCK;
-use crate::statistics::{line, mean};
+use crate::statistics::{line, mean, scatter};
 
 /// What a fit shows that a user should know.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -36,6 +37,17 @@ pub enum FitWarning {
         curve: usize,
         /// Force below the base line \[N\].
         force: f64,
+    },
+    /// The drive of a curve scatters, and the force does not follow it as that of a tip that moves so would: the scatter is an error of the measured drive. The
+    /// fit takes it for a motion, which biases the moduli. [`Curve::averaged`](crate::Curve::averaged) reduces it.
+    #[error(
+        "curve {curve}: the force does not show the scatter of the drive of {scatter:.2e} m, an error of its measurement that biases the moduli: use Curve::averaged"
+    )]
+    DriveError {
+        /// Index of the curve.
+        curve: usize,
+        /// Standard deviation of the scatter \[m\].
+        scatter: f64,
     },
     /// The data determine a parameter by no better than a factor of two.
     #[error("{parameter} is uncertain by more than a factor of two: fix it, or measure where it matters")]
@@ -105,8 +117,8 @@ impl Fit {
             let [over_noise, over_force] = self.misfit();
             warnings.push(FitWarning::Misfit { over_noise, over_force });
         }
-        if let Some((model, sum)) = self.contained.filter(|(_, sum)| *sum < (1.0 - SAME_SUM) * self.sum) {
-            warnings.push(FitWarning::AboveContained { model, ratio: sum / self.sum });
+        if let Some((model, ratio)) = self.above.filter(|(_, ratio)| *ratio < 1.0 - SAME_SUM) {
+            warnings.push(FitWarning::AboveContained { model, ratio });
         }
         for (curve, of) in self.curves.iter().enumerate() {
             let is_bound = self.autoregression_of(curve).is_some_and(|phi| phi > GREAT_CORRELATION);
@@ -114,6 +126,9 @@ impl Fit {
                 warnings.push(FitWarning::Correlation { curve });
             }
             warnings.extend(self.pull_off(of, curve).map(|force| FitWarning::PullOff { curve, force }));
+            if is_error(self.samples(curve), self.residuals(curve)) {
+                warnings.push(FitWarning::DriveError { curve, scatter: scatter(of.experiment.protocol.drive()) });
+            }
             warnings.extend(self.contact_warnings(curve));
         }
         let ([shortest, longest], of_material) = (self.problem.window, self.model().parameters());
@@ -140,7 +155,7 @@ impl Fit {
 
     /// The pull-off of a curve, less offset, drift, tilt and drag of the fit, below the base line before the contact, which scatters as the noise does.
     fn pull_off(&self, of: &Curve, curve: usize) -> Option<f64> {
-        let bare = Curve { force: self.problem.bare(curve, &self.values), ..of.clone() };
+        let bare = Curve { force: self.problem.whole().bare(curve, &self.values), ..of.clone() };
         let before = self.samples(curve).iter().position(|sample| sample.contact_depth > 0.0).unwrap_or(0);
         let means: Vec<f64> = bare.force[..before].chunks_exact(BLOCK).map(mean).collect();
         if means.is_empty() {

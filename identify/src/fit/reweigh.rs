@@ -6,12 +6,19 @@ use viscocontact::numeric::{LeastSquares, least};
 use crate::bounds::inverse_gram;
 use crate::error::Result;
 use crate::identification::Identification;
-use crate::noise::{CORRELATIONS, Whitening};
+use crate::noise::{CORRELATIONS, Whitening, difference};
 use crate::problem::Problem;
 use crate::statistics::square;
 
 /// Correlations that are tried first.
 const TRIED: usize = 40;
+/// Orders of a memory that are tried, up to that of spectra that fall a little faster than 1/f, and by how much −2 ln of the likelihood has to fall: white and
+/// autoregressive noise have a memory once in a hundred curves then.
+const MEMORY: f64 = 0.1;
+const MEMORIES: usize = 7;
+const CLEARLY: f64 = 6.6;
+/// Difference of −2 ln of the likelihood within which memories are as likely.
+const ALIKE: f64 = 2.7;
 /// Change of a weight or a correlation at which the noise is found.
 const FOUND: f64 = 1e-3;
 /// Residuals beyond so many standard deviations have no weight (Tukey's biweight, 95 % as efficient as least squares under normal noise).
@@ -31,7 +38,7 @@ impl Identification {
         for part in &mut bare.parts {
             part.scale = 1.0;
             if self.fits_correlation() {
-                part.whitening = Whitening::Autoregressive(0.0);
+                part.whitening = Whitening::default();
             }
         }
         let at = &minimum.coordinates;
@@ -44,10 +51,10 @@ impl Identification {
             first = rows.end;
             let mut own = residuals[rows.clone()].to_vec();
             if self.fits_correlation() {
-                let phi = correlation(&own, &jacobian, rows.start);
-                let before = part.whitening.correlation().unwrap_or_default();
-                is_found &= (phi - before).abs() < FOUND;
-                part.whitening = Whitening::Autoregressive(phi);
+                let [phi, memory] = correlation(&own, &jacobian, rows.start);
+                let before = part.whitening;
+                is_found &= (phi - before.phi).abs() < FOUND && memory == before.memory;
+                part.whitening = Whitening { phi, memory };
                 part.whitening.apply(&mut own);
             }
             let leverage = |row: usize| {
@@ -90,9 +97,9 @@ impl Identification {
     }
 }
 
-/// The autoregressive coefficient of the greatest restricted likelihood (H. D. Patterson & R. Thompson, Biometrika 58, 1971): the residuals
-/// are those of the problem that is linearised by the rows of the Jacobian from `first` on.
-fn correlation(residuals: &[f64], jacobian: &Mat<f64>, first: usize) -> f64 {
+/// The autoregressive coefficient of the greatest restricted likelihood (H. D. Patterson & R. Thompson, Biometrika 58, 1971), and the order of the
+/// memory: the residuals are those of the problem that is linearised by the rows of the Jacobian from `first` on.
+fn correlation(residuals: &[f64], jacobian: &Mat<f64>, first: usize) -> [f64; 2] {
     let points = residuals.len();
     let slopes = (0..jacobian.ncols()).map(|j| (0..points).map(|k| jacobian[(first + k, j)]).collect::<Vec<f64>>());
     let mut columns: Vec<Vec<f64>> = slopes.filter(|column| square(column) > 0.0).collect();
@@ -103,8 +110,8 @@ fn correlation(residuals: &[f64], jacobian: &Mat<f64>, first: usize) -> f64 {
         column.iter_mut().for_each(|value| *value /= norm);
     }
     // −2 ln of the restricted likelihood
-    let unlikelihood = |phi: f64| {
-        let (whitening, mut white) = (Whitening::Autoregressive(phi), columns.clone());
+    let unlikelihood = |columns: &[Vec<f64>], phi: f64| {
+        let (whitening, mut white) = (Whitening { phi, memory: 0.0 }, columns.to_vec());
         white.iter_mut().for_each(|column| whitening.apply(column));
         let white = Mat::from_fn(points, count + 1, |k, j| white[j][k]);
         let ridge = Mat::<f64>::identity(count + 1, count + 1) * faer::Scale(1e-12);
@@ -115,7 +122,18 @@ fn correlation(residuals: &[f64], jacobian: &Mat<f64>, first: usize) -> f64 {
         (points - count) as f64 * twice_ln(count) - whitening.log_weight() + determinant
     };
     if points <= count || square(residuals) == 0.0 {
-        return 0.0;
+        return [0.0; 2];
     }
-    least(CORRELATIONS[0], CORRELATIONS[1], TRIED, unlikelihood)
+    let tried: Vec<_> = (0..=MEMORIES)
+        .map(|k| {
+            let (memory, mut columns) = (MEMORY * k as f64, columns.clone());
+            columns.iter_mut().for_each(|column| difference(column, memory));
+            let phi = least(CORRELATIONS[0], CORRELATIONS[1], TRIED, |phi| unlikelihood(&columns, phi));
+            (unlikelihood(&columns, phi) + if memory > 0.0 { CLEARLY } else { 0.0 }, [phi, memory])
+        })
+        .collect();
+    let (least, [_, memory]) = tried.iter().fold((f64::INFINITY, [0.0; 2]), |a, b| if b.0 < a.0 { *b } else { a });
+    // of memories that are as likely, the longest: with a shorter one deviations are too small
+    let margin = if memory > 0.0 { ALIKE } else { 0.0 };
+    tried.iter().rfind(|(cost, _)| *cost <= least + margin).map_or([0.0; 2], |found| found.1)
 }

@@ -1,29 +1,39 @@
 //! The search for the parameters of a fit.
 
+use std::sync::Arc;
+
+use faer::Col;
 #[cfg(feature = "rayon")]
 use rayon::prelude::*;
 use viscocontact::numeric::LeastSquares;
 
+use super::scatter::is_error;
+use crate::bounds::inverse_gram;
 use crate::error::{Error, Result};
 use crate::experiment::Curve;
 use crate::fit::Fit;
 use crate::identification::Identification;
 use crate::model::Model;
+use crate::noise::Noise;
 use crate::parameters::Property;
-use crate::problem::Problem;
+use crate::problem::{LONG, Problem};
 use crate::start::starts;
-use crate::statistics::{is_flat, scatter};
+use crate::statistics::{is_flat, means, scatter};
 
 /// Rounds of fits, each with the noise of the one before.
 const MAX_ROUNDS: usize = 12;
+/// Share of the information on a parameter that means of neighbours may lose.
+const MOST_LOST: f64 = 0.01;
+/// Deviations by which means may move a coordinate.
+const LITTLE_MOVED: f64 = 0.3;
 /// Relative difference of the sums of squares of one minimum.
 const AGREED: f64 = 1e-7;
 
 /// What a search found.
 pub(crate) struct Found {
     pub(super) minimum: LeastSquares,
-    /// A model that this one contains, and its sum of squares.
-    pub(super) contained: Option<(Model, f64)>,
+    /// A model that this one contains, and its sum of squares over the least one.
+    pub(super) above: Option<(Model, f64)>,
 }
 
 impl Identification {
@@ -39,8 +49,18 @@ impl Identification {
             return Err(Error::NoContact { curve });
         }
         let scatters: Vec<f64> = curves.iter().map(|curve| scatter(&curve.force)).collect();
+        // known correlations are those of samples, and an outlier is one
+        let is_simple = matches!(self.noise, Noise::White | Noise::Autoregressive) && !self.robust;
         self.balance(&mut problem, &scatters);
-        let mut found = self.global_minimum(&problem)?;
+        let means = if is_simple { problem.thinned(LONG) } else { None };
+        let mut found = self.global_minimum(means.as_ref().unwrap_or(&problem))?;
+        if let Some(means) = means {
+            let means = Problem { whole: Some(Arc::new(problem.clone())), ..means };
+            match self.means_suffice(&means, &found.minimum)? {
+                true => problem = means,
+                false => found.minimum = self.minimum(&problem, found.minimum.coordinates)?,
+            }
+        }
         if self.fits_correlation() || self.robust || self.finds_deviations(&problem) {
             for _ in 0..MAX_ROUNDS {
                 let mut next = problem.clone();
@@ -50,7 +70,7 @@ impl Identification {
                 }
                 problem = next;
                 // sums of squares of other weights cannot be compared
-                found = Found { minimum: self.minimum(&problem, found.minimum.coordinates)?, contained: None };
+                found = Found { minimum: self.minimum(&problem, found.minimum.coordinates)?, above: None };
             }
         }
         let fit = Fit::new(self, problem, found)?;
@@ -85,7 +105,7 @@ impl Identification {
     /// Each result as of [`Identification::fit`], where the index of a curve is 0. An error of one curve does not end the others.
     pub fn fit_each(&self, curves: &[Curve], done: impl Fn(&Result<Fit>) + Sync) -> Vec<Result<Fit>> {
         let lists = self.chosen.0.iter().map(|(name, of)| of.each(Property::field(name), curves.len()).map(drop));
-        let suited: Result<()> = self.noise.suits(curves.len()).and_then(|()| lists.collect());
+        let suited: Result<()> = lists.collect();
         let fit = |(index, curve): (usize, &Curve)| {
             let fit = suited.clone().and_then(|()| self.of_curve(index).fit(std::slice::from_ref(curve)));
             done(&fit);
@@ -95,6 +115,28 @@ impl Identification {
         return curves.par_iter().enumerate().map(fit).collect();
         #[cfg(not(feature = "rayon"))]
         curves.iter().enumerate().map(fit).collect()
+    }
+
+    /// Whether the minimum of means of neighbours is that of all samples, nearly: they lose little of the information, and the residuals of the samples
+    /// would move no coordinate by much of its deviation. They may move it where the drive has errors of measurement, which means reduce.
+    fn means_suffice(&self, problem: &Problem, minimum: &LeastSquares) -> Result<bool> {
+        let (coordinates, whole) = (&minimum.coordinates, problem.whole());
+        let (slopes, values) = (problem.slopes(coordinates)?, problem.values(coordinates));
+        let prony = problem.prony(&values)?;
+        let (mut differences, mut has_errors) = (Vec::new(), false);
+        for (curve, part) in problem.parts.iter().enumerate() {
+            let (samples, force, residuals) = whole.response(curve, &values, &prony)?;
+            has_errors |= is_error(&samples, &residuals);
+            let coarse = problem.force(curve, &values, &prony)?;
+            differences
+                .push(means(&force, part.len()).iter().zip(coarse).map(|(fine, coarse)| fine - coarse).collect());
+        }
+        let (differences, jacobian) = (problem.white(differences), problem.matrix(&slopes));
+        let inverse = inverse_gram(&jacobian, 1e-13)?;
+        let moved = &inverse * jacobian.transpose() * Col::from_fn(differences.len(), |k| differences[k]);
+        let deviation = (minimum.sum() / problem.len() as f64).sqrt();
+        let is_same = (0..moved.nrows()).all(|k| moved[k].abs() < LITTLE_MOVED * deviation * inverse[(k, k)].sqrt());
+        Ok(problem.lost(&slopes) <= MOST_LOST && (is_same || has_errors))
     }
 
     /// The least of the minima from several starts, of which one is the minimum of each model that this one contains. Most of the search is on
@@ -108,7 +150,7 @@ impl Identification {
         });
         self.watch.goes_on()?;
         let start = inside.iter().map(|(.., coordinates)| coordinates.clone());
-        let rough = problem.thinned();
+        let rough = problem.rough();
         let some = rough.as_ref().unwrap_or(problem);
         let mut best = self.least(some, start.clone().chain(starts(some)?), AGREED.max(some.enough));
         if rough.is_some() {
@@ -118,7 +160,8 @@ impl Identification {
                 best = if sum(&again) < sum(&best) { again } else { best };
             }
         }
-        Ok(Found { minimum: best?, contained: inside.map(|(model, sum, _)| (model, sum)) })
+        let above = inside.map(|(model, least, _)| (model, least / sum(&best)));
+        Ok(Found { minimum: best?, above })
     }
 
     /// The least of the minima from several starts; two that agree end the search.

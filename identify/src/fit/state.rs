@@ -1,5 +1,7 @@
 //! The numbers of a fit, from which it is made again without a search.
 
+use std::sync::Arc;
+
 use viscocontact::numeric::LeastSquares;
 
 use super::Fit;
@@ -8,7 +10,8 @@ use crate::error::{Result, same_length};
 use crate::experiment::Curve;
 use crate::identification::Identification;
 use crate::noise::Whitening;
-use crate::problem::Part;
+use crate::part::Part;
+use crate::problem::{LONG, Problem};
 
 /// The numbers of a fit, without its curves: to save it, or to send it to another process.
 ///
@@ -30,23 +33,27 @@ use crate::problem::Part;
 pub struct FitState {
     /// The free parameters on their scales.
     pub coordinates: Vec<f64>,
-    /// Of each curve: its weight, the autoregressive coefficient, and a weight of each sample.
-    pub noise: Vec<(f64, Option<f64>, Vec<f64>)>,
+    /// Of each curve: its weight, the autoregressive coefficient, the order of the memory, and a weight of each sample
+    /// or mean.
+    pub noise: Vec<(f64, [f64; 2], Vec<f64>)>,
+    /// Whether means of neighbours were fitted.
+    pub means: bool,
     /// Iterations of the search.
     pub iterations: usize,
-    /// The least sum of squares of a model that this one contains.
-    pub contained: Option<f64>,
+    /// The least sum of squares of a model that this one contains, over the own one.
+    pub above: Option<f64>,
 }
 
 impl FitState {
-    /// No fit yet.
+    /// Of these fields, in their order.
     pub fn new(
         coordinates: Vec<f64>,
-        noise: Vec<(f64, Option<f64>, Vec<f64>)>,
+        noise: Vec<(f64, [f64; 2], Vec<f64>)>,
+        means: bool,
         iterations: usize,
-        contained: Option<f64>,
+        above: Option<f64>,
     ) -> FitState {
-        FitState { coordinates, noise, iterations, contained }
+        FitState { coordinates, noise, means, iterations, above }
     }
 
     /// The fit of these numbers to the curves that they are of.
@@ -57,29 +64,30 @@ impl FitState {
         let mut problem = identification.problem(curves.to_vec())?;
         same_length("state of a fit", self.coordinates.len(), problem.free().count())?;
         same_length("noise of the curves of a fit", self.noise.len(), curves.len())?;
-        for (part, (scale, correlation, outliers)) in problem.parts.iter_mut().zip(self.noise) {
+        if let Some(means) = problem.thinned(LONG).filter(|_| self.means) {
+            problem = Problem { whole: Some(Arc::new(problem)), ..means };
+        }
+        for (part, (scale, [phi, memory], outliers)) in problem.parts.iter_mut().zip(self.noise) {
             same_length("weights of the samples of a fit", outliers.len(), part.len())?;
-            (part.scale, part.outliers) = (scale, outliers);
-            if let Some(phi) = correlation {
-                part.whitening = Whitening::Autoregressive(phi);
-            }
+            (part.scale, part.outliers, part.whitening) = (scale, outliers, Whitening { phi, memory });
         }
         let residuals = problem.residuals(&self.coordinates)?;
         let minimum = LeastSquares::at(self.coordinates, residuals, self.iterations);
-        let contained = problem.model.contained().zip(self.contained);
-        Fit::new(identification, problem, Found { minimum, contained })
+        let above = problem.model.contained().zip(self.above);
+        Fit::new(identification, problem, Found { minimum, above })
     }
 }
 
 impl Fit {
     /// What tells this fit from others of the same curves, to make it again without a search ([`FitState::fit`]).
     pub fn state(&self) -> FitState {
-        let noise = |part: &Part| (part.scale, part.whitening.correlation(), part.outliers.clone());
+        let noise = |part: &Part| (part.scale, [part.whitening.phi, part.whitening.memory], part.outliers.clone());
         FitState {
             coordinates: self.coordinates.clone(),
             noise: self.problem.parts.iter().map(noise).collect(),
+            means: self.problem.whole.is_some(),
             iterations: self.iterations,
-            contained: self.contained.map(|(_, sum)| sum),
+            above: self.above.map(|(_, ratio)| ratio),
         }
     }
 }

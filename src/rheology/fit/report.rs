@@ -51,8 +51,9 @@ pub enum FitWarning {
         /// The creep is uncertain by more than 5 % until this time \[s\].
         until: f64,
     },
-    /// A sample contradicts the others, and was left out of the fit or counts little: check it. The first row of a
-    /// relaxation is often off, where the strain rings or takes its time. Contacts do not warn.
+    /// A sample contradicts the others: check it. It was left out of the fit or counts little, unless it is an end of a
+    /// noisy creep curve, which may be right and is kept. The first row of a relaxation is often off, where the strain
+    /// rings or takes its time. Contacts do not warn.
     Outlier {
         /// Its time \[s\] or angular frequency \[rad/s\].
         x: f64,
@@ -83,8 +84,7 @@ impl fmt::Display for FitWarning {
             FitWarning::Outlier { x, deviation } => {
                 return write!(
                     f,
-                    "the sample at {x:.3e} is {:.1} % off the curve of the others, and counts little or not at all: \
-                     check it",
+                    "the sample at {x:.3e} is {:.1} % off the curve of the others: check it",
                     100.0 * deviation
                 );
             }

@@ -14,6 +14,8 @@ pub(super) const TOLERABLE: f64 = 5e-3;
 const LEAST: f64 = 1e-2;
 /// A fit of all samples leaves less of an outlier inside than a fit of the others, but at least this many deviations.
 const SUSPECT: f64 = 2.0;
+/// An end that deviates by more than this share of what makes it an outlier follows the curve of the others poorly.
+const DOUBTFUL: f64 = 0.6;
 /// What a fit misses of an end without scatter, over what it misses of the sample next to it, varies by less.
 const CONTINUED: f64 = 2.0;
 /// Of so many rows, one may be an outlier: more are a property of the table, and fewer do not tell their scatter.
@@ -21,7 +23,8 @@ const ROWS_PER_OUTLIER: usize = 20;
 
 impl Search {
     /// The samples that do not contradict all others, and those that do, with their relative deviation from the fit of
-    /// the others. `scatter` is the relative standard deviation of a value, if it is stated.
+    /// the others; or, kept, the end that does so by half as much. `scatter` is the relative standard deviation of a
+    /// value, if it is stated.
     pub(super) fn without_outliers(
         &self,
         samples: &[Sample],
@@ -42,9 +45,20 @@ impl Search {
             let tried = (0..kept.len()).filter(|&k| is_end(k)).chain(worst);
             let excess = |k: usize| (k, self.excess(&kept, k, is_end(k), scatter));
             let found = tried.map(excess).max_by(|a, b| a.1.0.total_cmp(&b.1.0));
+            // ends of relaxation have warnings of their own
+            let is_doubtful = |excess: f64, deviation: f64| self.slope && excess > DOUBTFUL && deviation.abs() > LEAST;
             let is_outlier = |excess: f64, deviation: f64| excess > 1.0 && deviation.abs() < MOST_NOISE;
-            let Some((k, (_, deviation))) = found.filter(|(_, found)| is_outlier(found.0, found.1)) else { break };
-            outliers.push((kept.remove(k), deviation));
+            match found {
+                Some((k, (excess, deviation))) if is_outlier(excess, deviation) => {
+                    outliers.push((kept.remove(k), deviation))
+                }
+                Some((k, (excess, deviation)))
+                    if is_end(k) && is_doubtful(excess, deviation) && outliers.is_empty() =>
+                {
+                    return (kept.clone(), vec![(kept[k], deviation)]);
+                }
+                _ => break,
+            }
         }
         (kept, outliers)
     }
