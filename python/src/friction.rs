@@ -185,7 +185,7 @@ made_by_calls!(ShearLoad);
 /// >>> contact.step(0.0, Load.force(1.0), ShearLoad((0.6, 0.0)))
 /// Traceback (most recent call last):
 /// Slides: ...
-/// >>> round(contact.force[0], 9)    # as it was before
+/// >>> round(contact.force[0], 8)    # as it was before
 /// 0.3
 #[pyclass(module = "viscocontact")]
 pub struct FrictionContact {

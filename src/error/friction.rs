@@ -1,5 +1,4 @@
 use crate::error::ErrorKind;
-use crate::load::Load;
 use crate::rounded::{TIME, rounded};
 
 /// Errors of contacts with friction in space.
@@ -47,7 +46,7 @@ pub enum FrictionError {
     #[error(
         "a load along the surface is a force (Load::force) or a displacement (Load::approach) without tilt, not {0}"
     )]
-    OtherLoad(Load),
+    OtherLoad(String),
 }
 
 impl FrictionError {

@@ -36,7 +36,7 @@ impl ShearHistory {
             *component = match of(&**history)? {
                 Load::Force { normal: force, tilt: UPRIGHT } => Component::Force(force),
                 Load::Approach { approach: motion, tilt: UPRIGHT } => Component::Motion(motion),
-                other => return Err(FrictionError::OtherLoad(other).into()),
+                other => return Err(FrictionError::OtherLoad(other.to_string()).into()),
             };
         }
         Ok(load)

@@ -135,7 +135,7 @@ impl Solution {
             // what is beyond reach while the sets change, or would be beyond what is asked, is left
             let forcing =
                 if work.changed { 2.0 * FORCING } else { FORCING.min(residual.max(0.3 * tolerance / residual)) };
-            let gaps = if balance <= 0.3 * tolerance { [0.0; 3] } else { gaps };
+            let gaps = if balance <= 0.003 * tolerance { [0.0; 3] } else { gaps };
             if !self.advance(problem, kernel, (gaps, forcing), work) {
                 break;
             }

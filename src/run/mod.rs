@@ -158,7 +158,7 @@ pub trait Contact: Clone + Debug + Send + Sync + 'static {
     /// after an error does not matter to runs, which go back to the state before.
     ///
     /// # Errors
-    /// Of a contact of your own any [`Error`](crate::Error), a [`UserError`](crate::UserError) among them; else those
+    /// Of a contact of your own any [`Error`], a [`UserError`](crate::UserError) among them; else those
     /// of the `step` of the type.
     fn step_to(&mut self, time: f64, load: Load) -> Result<StepReport>;
 

@@ -45,9 +45,12 @@ fn scene(seed: u64) -> (FrictionContact, PiecewiseLinear) {
     (FrictionContact::new(builder, Coulomb::new(f).unwrap()).unwrap().sheared_by(shear), ramps(&pressed, true))
 }
 
-/// Motion, force and loss at times of a run, and its steps; angles times the square root of the contact area, torques
+/// Motion, force and loss.
+type Seen = ([f64; 3], [f64; 3], f64);
+
+/// What is seen at times of a run, and its steps; angles times the square root of the contact area, torques
 /// over it, and that of the last time.
-fn course(seed: u64, tolerance: f64) -> (Vec<([f64; 3], [f64; 3], f64)>, u64) {
+fn course(seed: u64, tolerance: f64) -> (Vec<Seen>, u64) {
     let (contact, pressed) = scene(seed);
     let mut run =
         contact.into_follow(pressed, Stepping::adaptive(tolerance), UNTIL).sample_at(Times::every(0.25)).unwrap();
@@ -100,8 +103,8 @@ fn runs_follow_jumps_and_say_when_bodies_slide() {
     let contact = || FrictionContact::new(builder(), Coulomb::new(0.5).unwrap()).unwrap();
     let pressed = StepLoad::new(Load::force(0.04)).unwrap();
     // a jump of both at once is one step of oblique loading: all of it sticks
-    let jump = ShearHistory::new(StepLoad::new(Load::force(0.012)).unwrap(), still.clone());
-    let mut run = contact().sheared_by(jump).into_follow(pressed.clone(), Stepping::fixed(0.5), 1.0);
+    let jump = ShearHistory::new(StepLoad::new(Load::force(0.012)).unwrap(), still);
+    let mut run = contact().sheared_by(jump).into_follow(pressed, Stepping::fixed(0.5), 1.0);
     run.next_step().unwrap().unwrap();
     assert_eq!(run.contact().stick_cells(), run.contact().normal().contact_cells());
     while run.next_step().unwrap().is_some() {}

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 const ORDER: &str = "\
     values axis extent guide linalg dense quadrature numeric rounded sum error events ascending attraction file input \
     grid memory parallel fft geometry motion kernel load rheology adhesion hereditary solver analytic equilibrium \
-    fields elastic observe contact friction sliding run states study laws output plot";
+    fields elastic observe contact sliding run friction states study laws output plot";
 
 fn files(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).unwrap() {

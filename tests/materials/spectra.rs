@@ -185,7 +185,7 @@ fn states_in_memory_are_those_of_files() {
         again.step(0.5, Load::force(0.2)).unwrap().approach
     );
     assert!(again.resume_bytes(b"other").is_err());
-    #[cfg(feature = "npy")]
+    #[cfg(feature = "all")]
     {
         use viscocontact::output::{states_from_bytes, states_to_bytes};
         assert_eq!(states_from_bytes(&states_to_bytes(&states)).unwrap().states(), states.states());
