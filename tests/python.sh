@@ -29,7 +29,6 @@ cp pyproject.toml "$folder"
 cd "$folder"
 export VISCOCONTACT_SCENES_IN_RUST="$CARGO_TARGET_DIR/debug/examples/scenes" PYTHONPATH="$folder" VISCOCONTACT_REPOSITORY="$repository"
 "$python" -m pytest --quiet tests
-"$python" -m mypy.stubtest viscocontact
 # the notebooks print what is stored, beside Tamaas and with PyTorch where these are installed; the reference needs pdoc
 for more in pdoc tamaas; do
     "$python" -c "import $more" 2>/dev/null || "$python" -m pip install --quiet "$more" 2>/dev/null || echo "without $more"
