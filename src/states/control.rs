@@ -196,7 +196,9 @@ impl Judge<StatesContact> for OnLevels {
             see([0, 1].map(|k| ended[0][k] - ended[1][k]), scales);
         }
         if let (Some(off), Some(shear)) = (whole.levels.shear_distance(&halves.levels), &halves.levels.shear) {
-            let [far, most] = shear.maxima;
+            // early in a run, what acts along the surface is small beside what will act
+            let ahead = SMALL * record.greatest_along[0] / halves.reached_along();
+            let [far, most] = shear.maxima.map(|most| if ahead.is_finite() { most * ahead.max(1.0) } else { most });
             see([off[0], off[1]], [shear.displacement().abs().max(SMALL * far), shear.force.abs().max(SMALL * most)]);
             see([off[2], 0.0], [shear.lost.max(SMALL * far * most), 0.0]);
         }

@@ -148,6 +148,16 @@ impl StatesContact {
         self.scene.friction.as_ref().map_or(&[], |friction| friction.history.as_slice())
     }
 
+    /// The maximum so far of what the history along the surface prescribes.
+    pub(super) fn reached_along(&self) -> f64 {
+        let is_force = self.lateral_history().first().is_none_or(|along| along.before(self.time()).is_force());
+        let of = |friction: &Friction, shear: &Shear| {
+            let [far, most] = shear.maxima;
+            if is_force { friction.coefficient * most } else { friction.of_displacement() * far }
+        };
+        self.sheared(of).unwrap_or(0.0)
+    }
+
     /// [`StatesContact::step`] with a load along the surface, as those of [`StatesContact::sheared_by`].
     ///
     /// # Errors

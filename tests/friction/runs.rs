@@ -202,3 +202,38 @@ fn sheared_runs_err_by_what_was_asked() {
         assert!(ratios.quantile(0.99) < 2.0 && ratios.greatest() < 3.0);
     }
 }
+
+/// Bodies that are pressed at once and moved along from rest: early, what moves along is tiny beside what will, and the levels that creep adds carry
+/// less than rounding leaves of the others.
+#[test]
+fn motions_from_rest_take_few_steps() {
+    for seed in 0..from_environment("FROM_REST", 12) {
+        let draws = &mut Draws::new(400 + seed);
+        let creep =
+            SlowCreep::new(5.0e-7, draws.power_of_ten(-7.0, -6.0), draws.between(0.5, 8.0), draws.between(0.3, 0.9))
+                .unwrap();
+        let body =
+            Material::constant_poisson(creep, draws.between(0.0, 0.5)).unwrap().fitted(1e-4..=1e2, 1e-4).unwrap();
+        let (radius, force, until) = (draws.scale(1e-3, 1e-2), draws.scale(0.01, 0.2), draws.between(0.2, 1.0));
+        let contact = StatesContact::new(&ElasticStates::sphere(radius).unwrap(), &body).unwrap();
+        let moved = Load::approach(draws.power_of_ten(-9.0, -5.5) * if draws.chance(0.5) { -1.0 } else { 1.0 });
+        let contact = contact.with_estimated_friction(draws.between(0.2, 0.8)).unwrap();
+        let contact = contact.sheared_by(Ramp::new(Load::approach(0.0), moved, 1.0).unwrap()).unwrap();
+        let end = |tolerance: f64| {
+            let pressed = StepLoad::new(Load::force(force)).unwrap();
+            let mut run = contact.clone().into_follow(pressed, Stepping::adaptive(tolerance), until);
+            let mut steps = 0;
+            while run.next_step().unwrap().is_some() {
+                steps += 1;
+                assert!(steps < 5000, "{seed}, {tolerance:.0e}: {} s", run.contact().time());
+            }
+            (run.contact().lateral_force(), steps)
+        };
+        for tolerance in [1e-2, 3e-3, 1e-3] {
+            let ((found, steps), (exact, _)) = (end(tolerance), end(0.04 * tolerance));
+            let ratio = (found / exact - 1.0).abs() / tolerance;
+            println!("{seed}: {tolerance:.0e} in {steps} steps: {ratio:.3}");
+            assert!(ratio < 2.0 && steps < 600, "{seed}: {ratio} {steps}");
+        }
+    }
+}

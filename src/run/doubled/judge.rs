@@ -135,7 +135,7 @@ pub(crate) struct Record<J> {
     pub(crate) greatest_load: f64,
     /// The same of what acts along the surface.
     pub(in crate::run) bends_along: Vec<f64>,
-    pub(in crate::run) greatest_along: [f64; 3],
+    pub(crate) greatest_along: [f64; 3],
     /// Loads below this one are lost in rounding.
     pub(crate) least_load: f64,
     /// Maximum error of an adaptive step.
