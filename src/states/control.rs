@@ -177,8 +177,8 @@ impl Judge<StatesContact> for OnLevels {
         let (Record { until, greatest_load, .. }, OnLevels { pressed, loaded, rise }) = (record, &record.own);
         let times = [*until, *pressed, rise[1]].map(|time| time / half);
         let expected = halves.levels.expected(&halves.states, demand, [*greatest_load, rise[0]], times);
-        let greatest = OnLevels::greatest(record, halves);
-        let greatest = [0, 1].map(|k| greatest[k].max(SMALL * expected[k]));
+        let reached = OnLevels::greatest(record, halves);
+        let greatest = [0, 1].map(|k| reached[k].max(SMALL * expected[k]));
         let results = |contact: &StatesContact| [contact.depth(), contact.force()];
         let ended = [&*whole, &*halves].map(results);
         // rates of a prescribed approach resist at once, and leave nothing behind
@@ -197,8 +197,10 @@ impl Judge<StatesContact> for OnLevels {
         }
         if let (Some(off), Some(shear)) = (whole.levels.shear_distance(&halves.levels), &halves.levels.shear) {
             // early in a run, what acts along the surface is small beside what will act
-            let ahead = SMALL * record.greatest_along[0] / halves.reached_along();
-            let [far, most] = shear.maxima.map(|most| if ahead.is_finite() { most * ahead.max(1.0) } else { most });
+            let along = SMALL * record.greatest_along[0] / halves.reached_along();
+            let ahead =
+                [along, greatest[1] / reached[1]].into_iter().filter(|ahead| ahead.is_finite()).fold(1.0, f64::max);
+            let [far, most] = shear.maxima.map(|most| most * ahead);
             see([off[0], off[1]], [shear.displacement().abs().max(SMALL * far), shear.force.abs().max(SMALL * most)]);
             see([off[2], 0.0], [shear.lost.max(SMALL * far * most), 0.0]);
         }
