@@ -400,5 +400,5 @@ fn warm_steps_take_few_convolutions() {
         quantiles(newton)
     );
     assert_eq!(failed, 0);
-    assert!(quantiles(warm)[0] < 220.0);
+    assert!(quantiles(warm)[0] < 110.0);
 }
