@@ -199,9 +199,10 @@ impl Judge<StatesContact> for OnLevels {
             // early in a run, what acts along the surface is small beside what will act
             let along = SMALL * record.greatest_along[0] / halves.reached_along();
             let ahead =
-                [along, greatest[1] / reached[1]].into_iter().filter(|ahead| ahead.is_finite()).fold(1.0, f64::max);
-            let [far, most] = shear.maxima.map(|most| most * ahead);
-            see([off[0], off[1]], [shear.displacement().abs().max(SMALL * far), shear.force.abs().max(SMALL * most)]);
+                [along, greatest[1] / reached[1]].map(|ahead| if ahead.is_finite() { ahead.max(1.0) } else { 1.0 });
+            let [far, most] = shear.maxima;
+            let scales = [SMALL * far * ahead[0], SMALL * most * ahead[0].max(ahead[1])];
+            see([off[0], off[1]], [shear.displacement().abs().max(scales[0]), shear.force.abs().max(scales[1])]);
             see([off[2], 0.0], [shear.lost.max(SMALL * far * most), 0.0]);
         }
         // what steps like this one add since the last corner, and nothing brings back, may be as large as the

@@ -150,10 +150,14 @@ impl StatesContact {
 
     /// The maximum so far of what the history along the surface prescribes.
     pub(super) fn reached_along(&self) -> f64 {
-        let is_force = self.lateral_history().first().is_none_or(|along| along.before(self.time()).is_force());
+        let load = self.lateral_history().first().map(|along| along.before(self.time()));
         let of = |friction: &Friction, shear: &Shear| {
-            let [far, most] = shear.maxima;
-            if is_force { friction.coefficient * most } else { friction.of_displacement() * far }
+            let (far, most) = (friction.of_displacement() * shear.maxima[0], friction.coefficient * shear.maxima[1]);
+            match load {
+                Some(Load::Approach { .. }) => far,
+                Some(Load::Spring { stiffness, .. }) => far + most / stiffness,
+                _ => most,
+            }
         };
         self.sheared(of).unwrap_or(0.0)
     }
