@@ -203,7 +203,7 @@ impl Judge<StatesContact> for OnLevels {
             let [far, most] = shear.maxima;
             let scales = [SMALL * far * ahead[0], SMALL * most * ahead[0].max(ahead[1])];
             see([off[0], off[1]], [shear.displacement().abs().max(scales[0]), shear.force.abs().max(scales[1])]);
-            see([off[2], 0.0], [shear.lost.max(SMALL * far * most), 0.0]);
+            see([off[2], 0.0], [shear.lost.max(SMALL * far * most * ahead[0].powi(2)), 0.0]);
         }
         // what steps like this one add since the last corner, and nothing brings back, may be as large as the
         // tolerance: to the depth under a spring, and to the surface of bodies apart that resist rates alone
