@@ -12,7 +12,7 @@ type Pickled<'py> =
     (Bound<'py, PyAny>, (Bound<'py, PyType>, &'static str, Py<PyTuple>, Option<Py<PyDict>>), Bound<'py, PyBytes>);
 
 macro_rules! both {
-    ($contact:ident, $bytes:ident => $saved:expr) => {
+    ($contact:ident) => {
         #[pymethods]
         impl $contact {
             /// Follows a load to the time `until` [s]: an iterator over the reports of the steps.
@@ -98,8 +98,8 @@ macro_rules! both {
                 let of = Shared::try_from(slf)?;
                 let (again, arguments) = of.recipe.reduce(slf.get_type())?;
                 let contact = of.get()?;
-                let $bytes = free(slf.py(), || contact.to_bytes());
-                Ok((again, arguments, PyBytes::new(slf.py(), &$saved)))
+                let bytes = free(slf.py(), || contact.to_bytes()).or_raise()?;
+                Ok((again, arguments, PyBytes::new(slf.py(), &bytes)))
             }
 
             fn __traverse__(&self, visit: PyVisit<'_>) -> Traversed {
@@ -120,5 +120,5 @@ macro_rules! both {
     };
 }
 
-both!(ViscoelasticContact, bytes => bytes.or_raise()?);
-both!(StatesContact, bytes => bytes);
+both!(ViscoelasticContact);
+both!(StatesContact);

@@ -95,8 +95,8 @@ impl Picture {
         Ok(self.0.rgb().to_vec().into_pyarray(py).reshape([height, width, 3])?.into_any())
     }
 
-    fn _repr_png_<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
-        PyBytes::new(py, &free(py, || self.0.to_png()))
+    fn _repr_png_<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        Ok(PyBytes::new(py, &free(py, || self.0.to_png()).or_raise()?))
     }
 
     fn __repr__(&self) -> String {

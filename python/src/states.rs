@@ -39,7 +39,10 @@ impl ElasticStates {
     fn made(&self, py: Python<'_>) -> PyResult<Recipe> {
         match &self.recipe {
             Some(recipe) => Ok(recipe.again(py)),
-            None => Recipe::new(py, "_of_bytes", (PyBytes::new(py, &free(py, || states_to_bytes(&self.states))),)),
+            None => {
+                let bytes = free(py, || states_to_bytes(&self.states)).or_raise()?;
+                Recipe::new(py, "_of_bytes", (PyBytes::new(py, &bytes),))
+            }
         }
     }
 }

@@ -36,6 +36,13 @@ pub(crate) fn failed(path: &Path, cause: io::Error) -> Error {
     OutputError::new(path, cause).into()
 }
 
+/// What a file would hold, in memory.
+#[cfg(any(feature = "checkpoint", feature = "npy", feature = "plot"))]
+pub(crate) fn in_memory(write: impl FnOnce(&mut io::Cursor<Vec<u8>>) -> io::Result<()>) -> Result<Vec<u8>> {
+    let mut out = io::Cursor::new(Vec::new());
+    write(&mut out).map(|()| out.into_inner()).map_err(|error| failed(Path::new("bytes in memory"), error))
+}
+
 /// Writes numbers in little-endian order.
 pub(crate) fn write_numbers(out: &mut impl io::Write, mut values: impl Iterator<Item = f64>) -> io::Result<()> {
     values.try_for_each(|value| out.write_all(&value.to_le_bytes()))

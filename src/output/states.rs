@@ -10,7 +10,7 @@ use zip::ZipArchive;
 use crate::Grid;
 use crate::contact::Warnings;
 use crate::error::{Error, FileError, Result, poisson_ratio};
-use crate::file::{npy, open, replace};
+use crate::file::{in_memory, npy, open, replace};
 use crate::load::Tilt;
 use crate::output::Metadata;
 use crate::output::npz::Archive;
@@ -77,9 +77,11 @@ pub fn write_states(path: impl AsRef<Path>, states: &ElasticStates, metadata: &M
 /// What [`write_states`] writes, in memory: for pickles, and for messages between processes.
 ///
 /// Needs the feature `npy`.
-pub fn states_to_bytes(states: &ElasticStates) -> Vec<u8> {
-    let mut out = Cursor::new(Vec::new());
-    archive(&mut out, states, &Metadata::new("")).map(|()| out.into_inner()).unwrap_or_default()
+///
+/// # Errors
+/// If the archive cannot be written: if it is too large for its format.
+pub fn states_to_bytes(states: &ElasticStates) -> Result<Vec<u8>> {
+    in_memory(|out| archive(out, states, &Metadata::new("")))
 }
 
 fn archive(out: impl Write + Seek, states: &ElasticStates, metadata: &Metadata) -> io::Result<()> {

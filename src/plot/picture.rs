@@ -7,7 +7,7 @@ use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 
 use crate::error::{Error, FileError, Result, count_within, least_length};
-use crate::file::replace;
+use crate::file::{in_memory, replace};
 use crate::plot::Canvas;
 use crate::plot::canvas::{Element, png_file};
 
@@ -82,9 +82,11 @@ impl Picture {
     }
 
     /// The bytes of the PNG file, in memory: for notebooks and servers.
-    pub fn to_png(&self) -> Vec<u8> {
-        let mut out = Vec::new();
-        png_file(&mut out, self.size, &self.rgb).map(|()| out).unwrap_or_default()
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn to_png(&self) -> Result<Vec<u8>> {
+        in_memory(|out| png_file(out, self.size, &self.rgb))
     }
 
     /// Writes the SVG document. Cells are an image of a pixel each: a map takes as much as in a PNG file, where

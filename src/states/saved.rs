@@ -11,7 +11,7 @@ use crate::contact::checkpoint::format::{Input, Output};
 use crate::contact::checkpoint::scene::{of_rule, of_text};
 use crate::contact::checkpoint::{check_clocks, malformed};
 use crate::error::{CheckpointError, Error, Result};
-use crate::file::replace;
+use crate::file::{in_memory, replace};
 use crate::run::doubled::judge::Record;
 use crate::run::progress::Progress;
 use crate::states::contact::StatesContact;
@@ -56,12 +56,13 @@ impl StatesContact {
     /// What [`StatesContact::save`] writes, in memory: for pickles, and for messages between processes.
     ///
     /// Needs the feature `checkpoint`.
-    pub fn to_bytes(&self) -> Vec<u8> {
+    ///
+    /// # Errors
+    /// If the numbers cannot be written.
+    pub fn to_bytes(&self) -> Result<Vec<u8>> {
         let times = [self.time, self.reduced_time, self.undisturbed_until];
         let saved = Saved { times, prescribed: self.prescribed, levels: Cow::Borrowed(&self.levels), run: None };
-        let mut out = Cursor::new(Vec::new());
-        let written = Output::begin(&mut out, &self.parts(), &saved).and_then(Output::finish);
-        written.map(|()| out.into_inner()).unwrap_or_default()
+        in_memory(|out| Output::begin(out, &self.parts(), &saved)?.finish())
     }
 
     /// Puts a saved state in the place of this one. The contact must be made of the same states and material, with

@@ -179,7 +179,7 @@ fn states_in_memory_are_those_of_files() {
     let small = || viscocontact::states::StatesContact::new(&states, &body).unwrap();
     let (mut contact, mut again) = (small(), small());
     contact.step(0.5, Load::force(0.1)).unwrap();
-    again.resume_bytes(&contact.to_bytes()).unwrap();
+    again.resume_bytes(&contact.to_bytes().unwrap()).unwrap();
     assert_eq!(
         contact.step(0.5, Load::force(0.2)).unwrap().approach,
         again.step(0.5, Load::force(0.2)).unwrap().approach
@@ -188,7 +188,7 @@ fn states_in_memory_are_those_of_files() {
     #[cfg(feature = "all")]
     {
         use viscocontact::output::{states_from_bytes, states_to_bytes};
-        assert_eq!(states_from_bytes(&states_to_bytes(&states)).unwrap().states(), states.states());
+        assert_eq!(states_from_bytes(&states_to_bytes(&states).unwrap()).unwrap().states(), states.states());
         assert!(states_from_bytes(b"other").is_err());
     }
 }
