@@ -12,7 +12,7 @@ import sys
 ROOT = pathlib.Path(__file__).parent.parent
 BUILT = ROOT / os.environ.get("CARGO_TARGET_DIR", "target") / "doc" / "viscocontact"
 ADDRESS = "https://docs.rs/viscocontact/latest/viscocontact/"
-MARK = "<!-- links to items, by docs/link.py -->"
+MARK = "<!-- docs/link.py -->"
 
 
 def pages_of_items():

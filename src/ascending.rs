@@ -109,7 +109,7 @@ enum Rule {
     Decades(f64, usize),
 }
 
-/// Greatest number of times per decade: more are closer than plots resolve.
+/// Maximum number of times per decade: more are closer than plots resolve.
 const MOST_PER_DECADE: usize = 1000;
 
 impl Schedule {

@@ -40,7 +40,7 @@ pub trait Attraction: Debug + Send + Sync {
         self.energy(0.0)
     }
 
-    /// The range ρ = w/s(0) \[m\]: over this gap the greatest traction would do the work of separation.
+    /// The range ρ = w/s(0) \[m\]: over this gap the maximum traction would do the work of separation.
     fn range(&self) -> f64 {
         self.energy(0.0) / self.traction(0.0)
     }

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result, positive};
 
-/// Greatest number of cells of a grid: a field of 8 bytes per cell can be addressed.
+/// Maximum number of cells of a grid: a field of 8 bytes per cell can be addressed.
 const MOST_CELLS: usize = isize::MAX as usize / size_of::<f64>();
 
 /// A rectangular grid of equal cells in the common plane of contact, centred on the origin.

@@ -75,7 +75,7 @@
 //! * **Kernel**: [`InfluenceKernel::convolve`] returns K p in Pa·m.
 //! * **Datum** of the approach: the surface far from a half-space's contact, the mean of a periodic surface, the surface at a distance given
 //!   with the kernel in line contacts, the undeformed surface of a layer on a rigid base.
-//! * **Heights** of maps and rough surfaces are positive outward; the gap is the greatest height minus each height.
+//! * **Heights** of maps and rough surfaces are positive outward; the gap is the maximum height minus each height.
 //! * **Motion**: a positive velocity moves the indenter over the creeping bodies along x1 or x2; the lateral force moves it.
 //! * **Time**: bodies are undisturbed before t = 0. A step of length 0 is a jump of the load.
 //!

@@ -7,7 +7,7 @@ pub(crate) const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// A struct of sums and maxima over cells, each with a name, that bands and ranks reduce.
 ///
 /// `named_sums!(Found { force: +, moments: modes, deepest: max })` declares `Found` with five numbers: a sum, three
-/// sums, and the greatest of values ≥ 0. `most` is the greatest of values of either sign. `joined` adds sums, and
+/// sums, and the largest of values ≥ 0. `most` is the largest of values of either sign. `joined` adds sums, and
 /// takes the greater of maxima. `numbers` and `of` convert to an array and back, for ranks.
 macro_rules! named_sums {
     ($(#[$of:meta])* $name:ident { $($(#[$doc:meta])* $field:ident: $kind:tt,)* }) => {
@@ -73,17 +73,17 @@ pub(crate) fn sum(values: &[f64]) -> f64 {
     lanes.into_iter().sum::<f64>() + rest.iter().sum::<f64>()
 }
 
-/// The greatest |value|.
+/// The largest |value|.
 pub(crate) fn greatest(values: &[f64]) -> f64 {
     greatest_of(values, 0.0, f64::abs)
 }
 
-/// The greatest value, −∞ of no values.
+/// The maximum value, −∞ of no values.
 pub(crate) fn most(values: &[f64]) -> f64 {
     greatest_of(values, f64::NEG_INFINITY, |value| value)
 }
 
-/// The greatest of `least` and f of the values; NaN is passed over.
+/// The largest of `least` and f of the values; NaN is passed over.
 fn greatest_of(values: &[f64], least: f64, f: impl Fn(f64) -> f64) -> f64 {
     let (chunks, rest) = values.as_chunks::<LANES>();
     let mut lanes = [least; LANES];

@@ -186,7 +186,7 @@ pub enum Error {
         "the force deflects the spring by {deflection:.2e} m while the drive moves by {travel:.2e} m: check the stiffness of the spring, and the units of force and drive"
     )]
     SpringTooSoft {
-        /// Deflection of the spring from first touch to the greatest force \[m\].
+        /// Deflection of the spring from first touch to the maximum force \[m\].
         deflection: f64,
         /// Motion of the drive in this time \[m\].
         travel: f64,

@@ -2,7 +2,7 @@
 
 use crate::error::{Result, within};
 
-/// Least and greatest autoregressive coefficient that is looked for.
+/// Least and maximum autoregressive coefficient that is looked for.
 pub(crate) const CORRELATIONS: [f64; 2] = [-0.9, 0.995];
 
 /// The noise of the measured forces.
@@ -13,7 +13,7 @@ pub enum Noise {
     #[default]
     White,
     /// Each deviation is φ times the one before plus an independent part: amplifiers, filters, thermal motion of a
-    /// cantilever. φ of each curve is the one of the greatest restricted likelihood of the residuals. Where that is clearly likelier, the independent
+    /// cantilever. φ of each curve is the one of the maximum restricted likelihood of the residuals. Where that is clearly likelier, the independent
     /// parts have a long memory, too, as pink noise has: their spectrum grows as a power −2d of the frequency towards 0 ([`Fit::memory_of`](crate::Fit::memory_of)).
     Autoregressive,
     /// Autoregressive with a known φ, between −1 and 1.

@@ -9,9 +9,9 @@ use crate::experiment::{Curve, Experiment};
 use crate::protocol::Protocol;
 use crate::statistics::{line, mean, means, range, scatter};
 
-/// Drives that differ from the greatest by less than this share of the range are at the top of a segment.
+/// Drives that differ from the largest by less than this share of the range are at the top of a segment.
 const TOP: f64 = 1e-2;
-/// Drives that differ from the greatest one by less than this share of the range belong to its hold.
+/// Drives that differ from the largest one by less than this share of the range belong to its hold.
 const SAME_DRIVE: f64 = 1e-3;
 /// Contact points that are tried first.
 const POINTS: usize = 60;
@@ -43,7 +43,7 @@ impl Curve {
         self.samples(from..to)
     }
 
-    /// The curve until the drive first comes near its greatest value.
+    /// The curve until the drive first comes near its maximum value.
     ///
     /// # Errors
     /// As [`Curve::within`].
@@ -51,7 +51,7 @@ impl Curve {
         self.samples(0..self.top(TOP).0 + 1)
     }
 
-    /// The curve until the drive leaves its greatest value: approach and hold.
+    /// The curve until the drive leaves its maximum value: approach and hold.
     ///
     /// # Errors
     /// As [`Curve::within`].
@@ -77,7 +77,7 @@ impl Curve {
         self.pull_below(self.base_line(), 0.0)
     }
 
-    /// The greatest force below a base line after the top, if it is more than noise explains, whose means of blocks scatter by at least `wander`.
+    /// The maximum force below a base line after the top, if it is more than noise explains, whose means of blocks scatter by at least `wander`.
     pub(crate) fn pull_below(&self, base: f64, wander: f64) -> Option<f64> {
         let after = &self.force[self.top(TOP).1..];
         let pull = after.windows(BLOCK).map(|block| base - mean(block)).fold(0.0, f64::max);
@@ -116,7 +116,7 @@ impl Curve {
         Curve::new(experiment, self.force[samples].to_vec())
     }
 
-    /// First and last sample at which the drive differs from the greatest one by less than a `share` of its range.
+    /// First and last sample at which the drive differs from the largest one by less than a `share` of its range.
     pub(crate) fn top(&self, share: f64) -> (usize, usize) {
         let drive = self.experiment.protocol.drive();
         let [low, high] = range(drive);
@@ -124,7 +124,7 @@ impl Curve {
         (drive.iter().position(is_near).unwrap_or(0), drive.iter().rposition(is_near).unwrap_or(0))
     }
 
-    /// First and last sample of the hold at the greatest drive.
+    /// First and last sample of the hold at the maximum drive.
     pub(crate) fn hold(&self) -> (usize, usize) {
         self.top(SAME_DRIVE)
     }

@@ -14,13 +14,13 @@ use crate::model::Model;
 
 /// Spacing of the logarithms of the rates: sums of such exponentials are within 1e-6 of smooth relaxation.
 const SPACING: f64 = 0.55;
-/// Least rate times the longest time, and greatest rate times the shortest.
+/// Least rate times the longest time, and maximum rate times the shortest.
 const RATES: [f64; 2] = [0.5, 20.0];
 /// A narrow peak of a spectrum has twice as many rates up to so many halves of the spacing from it.
 const PEAK: i64 = 4;
 /// First time at which sums and laws agree, over the shortest; two last exponentials have the integral of the law before.
 const FIRST: f64 = 0.5;
-/// The lesser rate of the last two, over the greatest other one.
+/// The lesser rate of the last two, over the largest other one.
 const LAST: f64 = 10.0;
 /// Weight of the moduli, which makes those without effect small.
 const RIDGE: f64 = 1e-8;

@@ -5,7 +5,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF, StudentsT};
 /// A normal variable is within so many standard deviations in 95 of 100 cases.
 #[cfg(feature = "plot")]
 pub(crate) const WITHIN_95: f64 = 1.959963984540054;
-/// Least and greatest value.
+/// Least and maximum value.
 pub(crate) fn range(values: &[f64]) -> [f64; 2] {
     values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &value| [low.min(value), high.max(value)])
 }

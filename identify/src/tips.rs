@@ -9,7 +9,7 @@ use crate::error::{Result, within};
 
 /// Contact radii over the radius of a sphere: the first, below which all are powers of the radius to 1e-6, and the ratio of neighbours.
 const RADII: [f64; 2] = [1e-3, 1.05];
-/// Greatest contact radius over the radius of a sphere.
+/// Maximum contact radius over the radius of a sphere.
 const GREATEST: f64 = 0.97;
 
 /// A paraboloid r²/2R of `radius` R \[m\] at its apex: Hertz's law, which is also named a sphere ([`ElasticStates::sphere`]).

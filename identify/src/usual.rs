@@ -124,7 +124,7 @@ impl HoldRelaxation {
 }
 
 /// The relaxation modulus of a hold as F(t)/l(δ(t)), where l is the level of the elastic states: right after an ideal step of the
-/// depth. One exponential is fitted to it over the hold of the greatest drive. The tip touches at the drive `contact_point` \[m\].
+/// depth. One exponential is fitted to it over the hold of the maximum drive. The tip touches at the drive `contact_point` \[m\].
 ///
 /// # Errors
 /// If the hold has fewer than five points, or the depth is not positive there; [`Error::BeyondStates`].
@@ -168,7 +168,7 @@ pub struct LoadingModulus {
     pub contact_point: f64,
 }
 
-/// The elastic law F = F₀ + E* l(δ) of the states of the tip, fitted by least squares to the curve up to the greatest drive: for
+/// The elastic law F = F₀ + E* l(δ) of the states of the tip, fitted by least squares to the curve up to the maximum drive: for
 /// a sphere the law of Hertz, for a cone the law of Sneddon. The contact point is fitted too, unless it is given \[m\].
 ///
 /// On a creeping body E* is a modulus of the time of loading: it depends on the speed, and the contact point moves to make up for

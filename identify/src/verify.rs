@@ -12,7 +12,7 @@ use crate::fit::Fit;
 pub struct Verification {
     /// Force of the contact at each sample of the curve \[N\], without offset, drift and drag.
     pub force: Vec<f64>,
-    /// Greatest difference from the force of the fit, over the greatest force of the fit.
+    /// Maximum difference from the force of the fit, over the maximum force of the fit.
     pub difference: f64,
 }
 

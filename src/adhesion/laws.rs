@@ -66,7 +66,7 @@ pub(crate) fn usable(attraction: &dyn Attraction) -> Verdict {
     energy_is_within(USABLE, attraction)
 }
 
-/// Work of separation, range and greatest traction are finite and positive, and fit each other.
+/// Work of separation, range and maximum traction are finite and positive, and fit each other.
 ///
 /// # Errors
 /// The first violation.

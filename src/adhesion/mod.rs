@@ -10,7 +10,7 @@
 //! | [`LinearSoftening`] | (w/ρ) (1 − h/2ρ) up to h = 2ρ |
 //! | [`Dugdale`] | w/ρ up to h = ρ, with a linear end of stated width |
 //!
-//! Every law is given by w and either ρ ([`Attraction::range`]) or the greatest traction s(0). Laws of the same w and
+//! Every law is given by w and either ρ ([`Attraction::range`]) or the maximum traction s(0). Laws of the same w and
 //! ρ differ little in the pull-off force. A Lennard-Jones law with its repulsive branch is not offered: in place of
 //! the wall it would put a stiff spring.
 

@@ -46,7 +46,7 @@ const GRADES: i32 = 12;
 /// Decay times after which an exponential kernel is negligible: e^(−45) < 3e-20.
 const MAX_DECAY_TIMES: f64 = 45.0;
 
-/// Greatest radius and force: with these and the range of spectra, products do not overflow.
+/// Maximum radius and force: with these and the range of spectra, products do not overflow.
 const MOST: f64 = 1e100;
 
 impl GrowingSphere {

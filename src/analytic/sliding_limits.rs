@@ -6,7 +6,7 @@ use crate::numeric::EULER;
 use crate::rheology::Material;
 
 /// Friction of an indenter without an edge in steady motion, with no friction of its surface, over any creeping body,
-/// where the motion is slow or fast against every term of the creep. Derived in docs/validation.md; with one
+/// where the motion is slow or fast against every term of the creep. Derived in docs/maintainers/claims.md; with one
 /// retardation time the limits of the cylinder agree with S. C. Hunter's closed form
 /// ([`RollingCylinder`](super::RollingCylinder)).
 ///

@@ -26,7 +26,7 @@ pub(crate) struct Extrapolation {
     due: usize,
     /// Steps since then.
     stale: usize,
-    /// The greatest Σ p since then.
+    /// The largest Σ p since then.
     greatest: f64,
     /// The factor by which the rounding has grown since then.
     growth: f64,

@@ -20,9 +20,9 @@ const EDGE_MARGIN: usize = 2;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Figures {
-    /// Greatest slope of the undeformed bodies in contact, where it is too steep for the model ([`Warnings::STEEP`]).
+    /// Maximum slope of the undeformed bodies in contact, where it is too steep for the model ([`Warnings::STEEP`]).
     pub max_slope: Option<f64>,
-    /// Greatest displacement in contact over the thickness of a layer, of every contact on a [`Layer`](crate::Layer)
+    /// Maximum displacement in contact over the thickness of a layer, of every contact on a [`Layer`](crate::Layer)
     /// ([`Warnings::DEEP`]). On a half-space it is the part of the displacement that the layer takes.
     pub compression: Option<f64>,
     /// Cells across the contact, if fewer than eight ([`Warnings::FEW_CELLS`]): 4/π times the mean length of its rows
@@ -132,7 +132,7 @@ impl Held {
 }
 
 impl Ground {
-    /// Greatest displacement in contact over the thickness of a layer, as far as the layer and not its base is
+    /// Maximum displacement in contact over the thickness of a layer, as far as the layer and not its base is
     /// displaced; `None` without layer or contact. `motions` count from the datum of the gap. A call of all ranks.
     pub(crate) fn compression(
         &self,

@@ -35,7 +35,7 @@ impl RigidBodies<'_> {
         (0..self.request.loads.len()).filter_map(|body| Some((body, self.retraction(body)?)))
     }
 
-    /// The greatest |ω + α·x| on the grid that is taken from a gap: of the retraction where it is known, else of the
+    /// The largest |ω + α·x| on the grid that is taken from a gap: of the retraction where it is known, else of the
     /// prescribed motion.
     pub(crate) fn greatest_motion(&self, grid: &Grid) -> f64 {
         let [l1, l2] = grid.lengths();

@@ -24,7 +24,7 @@ pub struct Settings {
     /// Tolerance of the contact problem of a step: rms |h| in contact, relative to rms (c K p) there; the deepest
     /// penetration, in contact or outside, may be ten times that (default: 1e-6; range \[1e-13, 0.1\]). Adaptive
     /// steps solve to 0.03 of their own tolerance if that is more, unless this one is stricter than the default.
-    /// Where surfaces attract each other, forces are as exact, over the greatest attraction, down to 3e-4, and below
+    /// Where surfaces attract each other, forces are as exact, over the maximum attraction, down to 3e-4, and below
     /// 1e-6 to three hundred tolerances.
     tolerance: f64, with_tolerance;
     /// Iterations a step may take before it fails (default: 1000; range: 1 or more).

@@ -16,7 +16,7 @@ use crate::quadrature::bisect;
 use crate::solver::Outcome;
 use crate::sum::ROUNDING;
 
-/// Greatest number of forces that are tried.
+/// Maximum number of forces that are tried.
 const MAX_FORCES: usize = 60;
 /// The relative change of the force that is still to come, over the tolerance of the solver.
 const SHARE_OF_TOLERANCE: f64 = 0.3;
@@ -41,7 +41,7 @@ fn yielding(ground: &Ground, held: &Held, c: f64) -> f64 {
     0.5 * c / (pressed * ground.grid.cell_area() / PI).sqrt()
 }
 
-/// The greatest part of an error of the force under a given approach that a spring leaves: 1 of a spring far stiffer
+/// The maximum part of an error of the force under a given approach that a spring leaves: 1 of a spring far stiffer
 /// than the contact, 0 without springs.
 pub(crate) fn share_of_force(ground: &Ground, held: &Held, request: Request<'_>, c: f64) -> f64 {
     let yielding = yielding(ground, held, c);

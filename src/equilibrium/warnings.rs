@@ -34,7 +34,7 @@ bitflags! {
         /// ([`Figures::cells_across`](crate::contact::Figures::cells_across)): that of one body, or the patches of it
         /// on average, as on rough surfaces. Refine the mesh;
         /// [`Fields::mesh_error`](crate::fields::Fields::mesh_error) measures the error from 6 on. A sphere's approach,
-        /// greatest pressure and contact area err by up to 1.3 %, 4 % and 8 % with contacts of 4 cells across, by 0.5
+        /// maximum pressure and contact area err by up to 1.3 %, 4 % and 8 % with contacts of 4 cells across, by 0.5
         /// %, 1.5 % and 2.5 % with 8; the approach and the area of rough surfaces by up to 10 % each with 4, by up to
         /// 3 % and 5 % with 8.
         const FEW_CELLS = 1 << 1;

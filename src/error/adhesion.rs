@@ -23,7 +23,7 @@ pub enum AdhesionError {
         cells: f64,
         /// Least number of cells.
         least: f64,
-        /// Greatest side of a cell that resolves the zone \[m\].
+        /// Maximum side of a cell that resolves the zone \[m\].
         spacing: f64,
         /// Least range of the attraction that this mesh resolves \[m\].
         range: f64,
@@ -103,7 +103,7 @@ pub enum AdhesionError {
         time: f64,
         /// Passes made.
         passes: usize,
-        /// Change of the traction in the last pass, over the greatest traction of the law.
+        /// Change of the traction in the last pass, over the maximum traction of the law.
         change: f64,
         /// Change allowed.
         tolerance: f64,

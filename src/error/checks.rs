@@ -17,7 +17,7 @@ pub(crate) fn length(field: &'static str, value: f64) -> Result<f64> {
     within(field, value, value > 0.0 && value <= LONGEST, "finite, > 0 and at most 1e300 m")
 }
 
-/// Greatest length of a shape, and greatest height of a map \[m\].
+/// Maximum length of a shape, and maximum height of a map \[m\].
 pub(crate) const LONGEST: f64 = 1e300;
 
 /// Accepts Poisson's ratios of stable bodies.

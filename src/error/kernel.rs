@@ -73,7 +73,7 @@ pub enum KernelError {
     NotPositiveDefinite {
         /// Estimate of the least eigenvalue \[m\].
         least: f64,
-        /// Estimate of the greatest \[m\].
+        /// Estimate of the largest \[m\].
         most: f64,
     },
 

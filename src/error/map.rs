@@ -56,7 +56,7 @@ pub enum MapError {
     NotFilled {
         /// Iterations done.
         iterations: usize,
-        /// Greatest distance of a height from the mean of its neighbours \[m\].
+        /// Maximum distance of a height from the mean of its neighbours \[m\].
         residual: f64,
     },
 
@@ -167,7 +167,7 @@ pub enum MapError {
         spacing: f64,
         /// The distance from the nearest line of the grid, in spacings.
         off: f64,
-        /// The greatest distance allowed, in spacings.
+        /// The maximum distance allowed, in spacings.
         allowed: f64,
     },
 

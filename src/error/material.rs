@@ -61,7 +61,7 @@ pub enum MaterialError {
         rounded(*.at, 3)
     )]
     PoorFit {
-        /// Greatest relative error of the best series found.
+        /// Maximum relative error of the best series found.
         misfit: f64,
         /// Where it is \[s\].
         at: f64,

@@ -16,9 +16,9 @@ pub enum StatesError {
     Shrinks {
         /// Levels between which the pressure falls \[m²\].
         levels: [f64; 2],
-        /// Greatest fall of the pressure of a cell over the greatest pressure.
+        /// Maximum fall of the pressure of a cell over the maximum pressure.
         fall: f64,
-        /// Greatest fall that is taken for rounding.
+        /// Maximum fall that is taken for rounding.
         allowed: f64,
     },
 

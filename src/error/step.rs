@@ -72,7 +72,7 @@ pub enum StepError {
     ThroughLayer {
         /// End of the step \[s\].
         time: f64,
-        /// Greatest displacement in contact \[m\].
+        /// Maximum displacement in contact \[m\].
         depth: f64,
         /// Thickness of the layer \[m\].
         thickness: f64,

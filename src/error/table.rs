@@ -71,7 +71,7 @@ pub enum TableError {
     WrongWay {
         /// Which table.
         table: &'static str,
-        /// Where the deviation is greatest.
+        /// Where the deviation is largest.
         place: Place,
         /// Which column.
         column: &'static str,
@@ -91,7 +91,7 @@ pub enum TableError {
         table: &'static str,
         /// Relative misfit, root mean square.
         rms: f64,
-        /// Greatest relative misfit.
+        /// Maximum relative misfit.
         worst: f64,
         /// Where it is \[s or rad/s\].
         x: f64,

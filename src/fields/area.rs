@@ -189,7 +189,7 @@ impl Fields<'_> {
         if area > 0.0 { self.force() / area } else { 0.0 }
     }
 
-    /// Greatest pressure of any cell \[Pa\]; 0 without contact.
+    /// Maximum pressure of any cell \[Pa\]; 0 without contact.
     pub fn max_pressure(&self) -> f64 {
         let Held { region, current, .. } = self.held;
         region.rows().greatest(crate::sum::greatest(&current.solution.pressure))

@@ -10,7 +10,7 @@ use std::fmt;
 pub struct MeshError {
     /// Error of the approach, or of the force where the approach is given.
     pub approach: f64,
-    /// Error of the greatest pressure. `None` where it does not converge: the tip of a cone, the edge of a punch, a
+    /// Error of the maximum pressure. `None` where it does not converge: the tip of a cone, the edge of a punch, a
     /// peak that the cells do not resolve, or a contact too small to tell.
     pub max_pressure: Option<f64>,
     /// Error of the pressure field, Σ |δp| over Σ p, with p the mean over each cell: nearly all of it is at the rim.

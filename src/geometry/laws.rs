@@ -33,7 +33,7 @@ use crate::Grid;
 pub use crate::error::{Location, Verdict, Violation};
 use crate::geometry::Geometry;
 
-/// Difference that rounding may cause between equivalent formulas, relative to the greatest gap.
+/// Difference that rounding may cause between equivalent formulas, relative to the maximum gap.
 const ROUNDING: f64 = 1e-10;
 /// Distance that rounding may shift a point by, in cells: a jump, such as the rim of a face, may be displaced by it.
 const JUMP_DISPLACEMENT: f64 = 1e-9;
@@ -86,7 +86,7 @@ fn filled(geometry: &dyn Geometry, grid: &Grid, garbage: f64) -> Vec<f64> {
     gap
 }
 
-/// The greatest magnitude of the finite gaps.
+/// The maximum magnitude of the finite gaps.
 fn greatest(gap: &[f64]) -> f64 {
     gap.iter().filter(|h| h.is_finite()).fold(0.0, |most, h| h.abs().max(most))
 }
@@ -157,7 +157,7 @@ pub fn repeats_itself(geometry: &dyn Geometry, grid: &Grid) -> Verdict {
 /// [`Geometry::fill_gap`] writes [`Geometry::initial_gap`] at the cell centres.
 ///
 /// # Errors
-/// The first cell where they differ by more than 1e-10 of the greatest gap.
+/// The first cell where they differ by more than 1e-10 of the maximum gap.
 pub fn field_matches_points(geometry: &dyn Geometry, grid: &Grid) -> Verdict {
     let gap = filled(geometry, grid, 0.0);
     let within = ROUNDING * greatest(&gap);
@@ -169,7 +169,7 @@ pub fn field_matches_points(geometry: &dyn Geometry, grid: &Grid) -> Verdict {
 /// [`Geometry::fill_gap_at`] the origin is [`Geometry::fill_gap`].
 ///
 /// # Errors
-/// The first cell where they differ by more than 1e-10 of the greatest gap.
+/// The first cell where they differ by more than 1e-10 of the maximum gap.
 pub fn zero_shift_changes_nothing(geometry: &dyn Geometry, grid: &Grid) -> Verdict {
     let gap = filled(geometry, grid, 0.0);
     let within = ROUNDING * greatest(&gap);
@@ -181,7 +181,7 @@ pub fn zero_shift_changes_nothing(geometry: &dyn Geometry, grid: &Grid) -> Verdi
 /// Shifted by whole cells, each cell has the gap of the cell it came from, if that is on the grid.
 ///
 /// # Errors
-/// The first cell where they differ by more than 1e-10 of the greatest gap.
+/// The first cell where they differ by more than 1e-10 of the maximum gap.
 pub fn shifts_by_whole_cells(geometry: &dyn Geometry, grid: &Grid) -> Verdict {
     let (gap, [n1, n2]) = (filled(geometry, grid, 0.0), grid.cells());
     let within = ROUNDING * greatest(&gap);
@@ -200,7 +200,7 @@ pub fn shifts_by_whole_cells(geometry: &dyn Geometry, grid: &Grid) -> Verdict {
     Ok(())
 }
 
-/// Shifted by any `by` \[m\], the field is the gap at the shifted points, to `tolerance` of the greatest gap besides
+/// Shifted by any `by` \[m\], the field is the gap at the shifted points, to `tolerance` of the maximum gap besides
 /// rounding. Not part of [`all`]: a geometry that interpolates may shift its field more accurately than its points.
 ///
 /// # Errors

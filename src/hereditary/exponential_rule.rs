@@ -58,7 +58,7 @@ pub(crate) struct ExponentialRule {
     pub(super) tried: Weights,
     /// Of the step committed last, which the fields take in with the next prediction.
     pub(super) committed: Weights,
-    /// The greatest displacement so far.
+    /// The maximum displacement so far.
     pub(super) greatest: f64,
     /// How often a prediction was made again, because u_old was negative somewhere.
     pub(super) repeated: u64,

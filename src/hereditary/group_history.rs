@@ -269,7 +269,7 @@ impl GroupHistory {
 
     /// Whether W of two groups, its first difference and what their strains can ever add to W differ by `most` at
     /// most. Strains of groups that are held together, or free together, approach each other ever after, and W of a
-    /// free group is a mean of them: so their greatest difference is never passed, nor is the sum of what each of
+    /// free group is a mean of them: so their maximum difference is never passed, nor is the sum of what each of
     /// them alone can raise ([`ExponentialRule::influences`]).
     pub(crate) fn differ_at_most(&self, a: usize, b: usize, most: f64) -> bool {
         let mut pasts = std::iter::once(&self.normal).chain(&self.tangential);

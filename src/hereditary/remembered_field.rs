@@ -5,7 +5,7 @@ use crate::hereditary::field::{BLOCK, Field, Role, change};
 use crate::parallel::{BAND_CELLS, Rows, for_each_band};
 use crate::sum::greatest;
 
-/// What lies below zero by less than this part of the greatest value is rounding.
+/// What lies below zero by less than this part of the maximum value is rounding.
 const DIP: f64 = -1e-9;
 /// So small a part of the side of a cell is what a convolution leaves of nothing.
 const NOISE: f64 = -1e-14;
@@ -180,7 +180,7 @@ impl RememberedField {
         }
     }
 
-    /// Whether the trial is negative somewhere, by more than the rounding of the greatest field so far, or of a
+    /// Whether the trial is negative somewhere, by more than the rounding of the maximum field so far, or of a
     /// convolution that leaves nothing.
     pub(super) fn falls_below_zero(&self, rule: &mut ExponentialRule, side: f64, rows: &Rows) -> bool {
         rule.greatest = rule.greatest.max(rows.greatest(greatest(&self.now)));

@@ -28,7 +28,7 @@ impl Meeting {
 /// Data of a run besides the step.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct StepContext {
-    /// Mean displacement and v that are to be expected of the greatest loads.
+    /// Mean displacement and v that are to be expected of the maximum loads.
     pub(crate) expected: [f64; 2],
     /// How the bodies may meet again.
     pub(crate) meeting: Meeting,
@@ -37,7 +37,7 @@ pub(crate) struct StepContext {
     /// Where a given approach is to follow a given force: the errors of u at that moment, each over the glassy
     /// compliance, that a unit of a defect of v leaves in this step and in all steps; 0 where none is to follow.
     pub(crate) on_switch: [f64; 2],
-    /// The mean v of the greatest loads, to which the error at that moment is relative; 0 where none is to follow.
+    /// The mean v of the maximum loads, to which the error at that moment is relative; 0 where none is to follow.
     pub(crate) greatest_on_switch: f64,
     /// The response of v to an error of u of the cells that are met in a jump of the force at the end of the step; 0
     /// if there is none.

@@ -23,7 +23,7 @@ pub(crate) struct ErrorMeasure<'a> {
     /// Weights of the errors of u and of v: 1 and 0 under a given force, 0 and 1 under a given motion, which leaves u
     /// in contact no error.
     pub(crate) matters: [f64; 2],
-    /// The greatest means over the contact of displacement and v, and the least that errors are taken relative to.
+    /// The maximum means over the contact of displacement and v, and the least that errors are taken relative to.
     pub(crate) greatest: [f64; 2],
     pub(crate) least: [f64; 2],
     /// The gap of the undeformed bodies.
@@ -66,7 +66,7 @@ pub(crate) struct TimeError {
     pub(crate) relative: f64,
     /// Whether it comes of cells that joined.
     pub(crate) by_kinks: bool,
-    /// The greatest defect of v in a cell in contact, or in a cell that bodies may come back to, relative to the mean
+    /// The maximum defect of v in a cell in contact, or in a cell that bodies may come back to, relative to the mean
     /// of v.
     pub(crate) greatest: f64,
     /// Means over the contact of displacement and v, weighted by the pressure.
@@ -87,8 +87,8 @@ impl History {
     ///
     /// λ Γ_k Σ p |d_k| / Σ p, where λ is the share that is left once the next step has put this one right,
     ///
-    /// weighted by the pressure: the greatest error over all cells is the error of the kink of u at a moving edge,
-    /// which carries no force. Cells that have just left, and have no weight, count by the greatest of them. Those
+    /// weighted by the pressure: the maximum error over all cells is the error of the kink of u at a moving edge,
+    /// which carries no force. Cells that have just left, and have no weight, count by the largest of them. Those
     /// that joined in this step count with what v lacks by the kink of u when the body met them. Relative to v, this
     /// is the error of a force under given motion. Under a given force, the error of u is c times it, or more if the
     /// defects of many steps add up.
@@ -232,9 +232,9 @@ named_sums! {
         signed: +,
         /// Σ w |d|.
         absolute: +,
-        /// The greatest |d| of cells in contact.
+        /// The largest |d| of cells in contact.
         steepest: max,
-        /// The greatest |d| of cells that left the contact.
+        /// The largest |d| of cells that left the contact.
         left: max,
         /// Pressure of the cells that leave in this step, at its start, and by how much it fell in the step before.
         released: +,
@@ -250,7 +250,7 @@ named_sums! {
         kinks_within: modes,
         /// Sum of the squares of the most that v can lack by each kink.
         squares: +,
-        /// The greatest of either.
+        /// The largest of either.
         sharpest: max,
         /// Sum of the depths to which bodies may come back.
         depth: +,
@@ -258,7 +258,7 @@ named_sums! {
         surface: +,
         /// Sum, over cells out of contact, of these depths times |d|.
         absolute_surface: +,
-        /// The greatest |d| of these cells.
+        /// The largest |d| of these cells.
         peak: max,
     }
 }
@@ -270,11 +270,11 @@ struct Defect {
     smooth: f64,
     /// By cells that joined.
     kinks: f64,
-    /// The greatest of a cell.
+    /// The largest of a cell.
     greatest: f64,
     /// Of a surface that bodies may come back to, and of its absolute value.
     surface: [f64; 2],
-    /// The greatest of a cell of this surface.
+    /// The largest of a cell of this surface.
     peak: f64,
 }
 

@@ -9,16 +9,16 @@ use crate::axis::Axis;
 use crate::error::{KernelError, Result, count_within, within};
 use crate::{Grid, memory};
 
-/// Greatest difference of mirrored coefficients, relative to the greatest coefficient.
+/// Maximum difference of mirrored coefficients, relative to the maximum coefficient.
 const UNEQUAL: f64 = 1e-12;
-/// Negative eigenvalues below this are rounding, relative to the greatest eigenvalue.
+/// Negative eigenvalues below this are rounding, relative to the maximum eigenvalue.
 const ROUNDING: f64 = 1e-10;
 /// Sides of the cells of a half-space \[m\], and their ratios: within these, coefficients and their sums do not
 /// overflow.
 const RANGE: std::ops::RangeInclusive<f64> = 1e-100..=1e100;
-/// Greatest influence of a user-defined kernel \[m\].
+/// Maximum influence of a user-defined kernel \[m\].
 const GREATEST: f64 = 1e100;
-/// Greatest datum of a line load \[m\]: no grid of such cells is longer.
+/// Maximum datum of a line load \[m\]: no grid of such cells is longer.
 const FARTHEST_DATUM: f64 = 1e120;
 
 impl InfluenceKernel {

@@ -7,7 +7,7 @@ use crate::sum::sum_of_pairs;
 /// Lanczos steps: the extreme eigenvalues converge first.
 const STEPS: usize = 60;
 
-/// The least and the greatest eigenvalue of a symmetric operator on fields of `cells` values, estimated from inside the
+/// The least and the maximum eigenvalue of a symmetric operator on fields of `cells` values, estimated from inside the
 /// spectrum by the Lanczos method.
 pub(super) fn least_eigenvalue(operator: &SpectralOperator, cells: usize) -> (f64, f64) {
     let mut work = operator.workspace();

@@ -15,7 +15,7 @@ use crate::Grid;
 /// body periodic along one axis, the influence of a cell on another across it for a wave along it.
 pub(super) type Response = Arc<dyn Fn([usize; 2]) -> f64 + Send + Sync>;
 
-/// Least compliance of a wave in the approximate inverse, relative to the greatest of all waves.
+/// Least compliance of a wave in the approximate inverse, relative to the largest of all waves.
 pub(super) const LEAST_COMPLIANCE: f64 = 1e-8;
 
 /// What lies below the surface.
@@ -147,7 +147,7 @@ impl InfluenceKernel {
         (self.response)(k)
     }
 
-    /// The greatest compliance of a wave \[m\], if the mean has none.
+    /// The maximum compliance of a wave \[m\], if the mean has none.
     pub(crate) fn softest_wave_if_mean_is_held(&self) -> Option<f64> {
         *self.facts.softest.get_or_init(|| match self.body {
             _ if self.periodic != [true; 2] || (self.response)([0, 0]) != 0.0 => None,

@@ -108,7 +108,7 @@ struct Facts {
     on_itself: OnceLock<f64>,
     /// Whether a pressure raises the surface somewhere.
     raises: OnceLock<bool>,
-    /// The greatest compliance of a wave \[m\], if the mean has none.
+    /// The maximum compliance of a wave \[m\], if the mean has none.
     softest: OnceLock<Option<f64>>,
 }
 

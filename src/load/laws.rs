@@ -24,11 +24,11 @@ use crate::error::KIND_OF_LOAD;
 pub use crate::error::{Location, Verdict, Violation};
 use crate::load::{Load, LoadHistory, VALUES};
 
-/// Difference allowed between formulas that are equal but for rounding, relative to the greatest value.
+/// Difference allowed between formulas that are equal but for rounding, relative to the maximum value.
 const SAME: f64 = 1e-10;
-/// Greatest number of breakpoints between the times that are checked.
+/// Maximum number of breakpoints between the times that are checked.
 const MOST_BREAKPOINTS: usize = 10_000;
-/// Smaller second differences are rounding, relative to the greatest value.
+/// Smaller second differences are rounding, relative to the maximum value.
 const STRAIGHT: f64 = 1e-12;
 
 /// `count` + 1 evenly spaced times from `first` to `last` \[s\].
@@ -71,7 +71,7 @@ fn and_between(moments: &[f64]) -> impl Iterator<Item = f64> {
     moments.iter().copied().chain(between)
 }
 
-/// The greatest absolute value at and between the moments: a load may vanish at its corners.
+/// The maximum absolute value at and between the moments: a load may vanish at its corners.
 fn scales(history: &dyn LoadHistory, moments: &[f64]) -> [f64; VALUES] {
     and_between(moments).fold([0.0; VALUES], |most, t| {
         let (at, before) = (history.at(t).values(), history.before(t).values());
@@ -188,7 +188,7 @@ pub fn before_is_the_left_limit(history: &dyn LoadHistory, times: &[f64]) -> Ver
 }
 
 /// Between breakpoints the load has no jump and no corner, and does not change its kind. The search follows the
-/// greatest second difference.
+/// maximum second difference.
 ///
 /// # Errors
 /// The first violation.
@@ -221,7 +221,7 @@ pub fn smooth_between_breakpoints(history: &dyn LoadHistory, times: &[f64]) -> V
     Ok(())
 }
 
-/// Repeatedly halves the interval of the greatest second difference, which then falls to a quarter where the load is
+/// Repeatedly halves the interval of the maximum second difference, which then falls to a quarter where the load is
 /// smooth, to a half at a corner, and not at all at a jump. Returns the law that is violated, and the time.
 fn roughest(value: &dyn Fn(f64) -> f64, start: f64, end: f64, straight: f64) -> Option<(&'static str, f64)> {
     let bend = |[a, b]: [f64; 2]| (value(0.5 * (a + b)) - 0.5 * (value(a) + value(b))).abs();

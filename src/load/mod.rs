@@ -289,7 +289,7 @@ impl Load {
     }
 
     /// Deviation at `time` from the polynomial through loads of the same kind at other times: force, approach or
-    /// drive relative to `scale`, tilts, points and stiffness relative to their greatest value.
+    /// drive relative to `scale`, tilts, points and stiffness relative to their maximum value.
     pub(crate) fn deviation(&self, time: f64, nodes: &[(f64, Load)], scale: f64) -> f64 {
         let here = self.values();
         let (mut far, mut greatest) = (here, here.map(f64::abs));

@@ -17,7 +17,7 @@ const NOT_OBSERVED: f64 = 3.0;
 const LEAST: f64 = 0.5;
 pub(crate) const SINGULAR: f64 = 1.0;
 pub(crate) const SMOOTH: f64 = 2.0;
-/// A smaller difference, over the greatest value, is rounding.
+/// A smaller difference, over the maximum value, is rounding.
 const ROUNDING: f64 = 1e-12;
 /// How exactly an order is found.
 const ORDER: f64 = 1e-12;
@@ -63,7 +63,7 @@ impl OfMesh {
     }
 }
 
-/// The greatest difference of values over the greatest of the finer ones; 0 where it is rounding, as of a force that
+/// The maximum difference of values over the largest of the finer ones; 0 where it is rounding, as of a force that
 /// is given.
 pub(crate) fn difference(coarse: &[f64], fine: &[f64]) -> f64 {
     let scale = fine.iter().fold(0.0, |most: f64, value| most.max(value.abs()));

@@ -24,7 +24,7 @@ impl Fields<'_> {
     /// as large (docs/accuracy.md). What no mesh of the three resolves is not seen, as waves shorter than cells.
     /// Errors of a whole run are measured by a study (feature `study`).
     ///
-    /// Of several bodies the error of the approach is that of the body for which it is greatest.
+    /// Of several bodies the error of the approach is that of the body for which it is largest.
     ///
     /// `None` without contact, for contacts of a body that are less than about six cells across, where half the cells
     /// do not divide a period, and for coefficients of a user, which belong to cells.
@@ -65,7 +65,7 @@ struct Coarse {
     values: Vec<f64>,
 }
 
-/// Greatest pressure, area, and the approach or the force of each body in contact.
+/// Maximum pressure, area, and the approach or the force of each body in contact.
 fn values(of: Fields<'_>, by: Fields<'_>, datum: f64) -> Vec<f64> {
     let main = |body: usize| {
         let own = of.body(body).filter(|_| touches(by, body))?;

@@ -152,7 +152,7 @@ impl Fields<'_> {
         Ok(Punches { fields, matrix })
     }
 
-    /// The distribution of the pressure \[Pa\] over all cells of the grid, in `bins` between 0 and the greatest
+    /// The distribution of the pressure \[Pa\] over all cells of the grid, in `bins` between 0 and the largest
     /// pressure. [`Distribution::share_at_zero`] is the share out of contact.
     ///
     /// # Errors
@@ -163,7 +163,7 @@ impl Fields<'_> {
     }
 
     /// The distribution of the gap \[m\] over all cells where the initial gap is finite, in `bins` between 0 and the
-    /// greatest gap. [`Distribution::share_at_zero`] is the share in contact, including cells that touch without
+    /// maximum gap. [`Distribution::share_at_zero`] is the share in contact, including cells that touch without
     /// pressure.
     ///
     /// ```

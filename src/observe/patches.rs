@@ -18,7 +18,7 @@ pub struct Patch {
     /// Centroid of its area \[m\], on the grid. A patch across the edge of a periodic grid is unwrapped first; along
     /// an axis that it winds around, the centroid is the mean of the coordinates on the grid.
     pub centroid: [f64; 2],
-    /// Greatest pressure \[Pa\].
+    /// Maximum pressure \[Pa\].
     pub max_pressure: f64,
     /// Whether the patch connects to itself around the periodic axes x1 and x2.
     pub winds: [bool; 2],

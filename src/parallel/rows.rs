@@ -200,7 +200,7 @@ impl Rows {
         joined
     }
 
-    /// The greatest of the values of the ranks.
+    /// The largest of the values of the ranks.
     pub(crate) fn greatest(&self, own: f64) -> f64 {
         self.join([own], |[a], [b]| [a.max(b)])[0]
     }

@@ -81,7 +81,7 @@ struct Bar {
     logarithmic: bool,
 }
 
-/// The greatest fraction of the colour scale that curves have: its light end would vanish on white.
+/// The maximum fraction of the colour scale that curves have: its light end would vanish on white.
 const LIGHTEST: f64 = 0.9;
 /// The colour bar is logarithmic if the values differ by more than this factor.
 const LOGARITHMIC_FROM: f64 = 30.0;

@@ -11,7 +11,7 @@ use crate::file::{in_memory, replace};
 use crate::plot::Canvas;
 use crate::plot::canvas::{Element, png_file};
 
-/// Greatest width of a picture in pixels.
+/// Maximum width of a picture in pixels.
 const MAX_SIDE: usize = 16_384;
 /// The font of the pixels, then fonts that most systems have.
 const FONTS: &str = "'Ubuntu Light', Ubuntu, Arial, Helvetica, 'Liberation Sans', sans-serif";

@@ -4,7 +4,7 @@ use crate::error::{Result, within};
 
 /// The quantity of an axis or a colour bar.
 ///
-/// A quantity with a unit is given in SI and shown with the prefix for which its greatest value lies between 1 and
+/// A quantity with a unit is given in SI and shown with the prefix for which its maximum value lies between 1 and
 /// 1000 (areas from 0.1, volumes from 0.01 on): `approach [µm]`, `contact area [mm²]`. Lengths, times and angles get
 /// no prefix above 1 (`km`, `ks`). Units that have a prefix already, or take none (`kg`, `%`, `1/Pa`, `°C`), are not
 /// changed. A plain text is a quantity without a unit. Values that still have many digits get a shared power of ten:
@@ -80,7 +80,7 @@ fn prefix(unit: &str, greatest: f64) -> Option<(&'static str, f64)> {
     Some((prefix, 10f64.powi(-3 * steps * power)))
 }
 
-/// Greatest magnitude that a picture can show.
+/// Maximum magnitude that a picture can show.
 const MAX_DRAWABLE: f64 = 1e100;
 
 /// Accepts values that a picture can show.

@@ -8,7 +8,7 @@ use crate::plot::map::runs;
 use crate::plot::{Map, Quantity};
 use crate::{Axis, Grid};
 
-/// Greatest difference of the steps between depths, relative to the first of them.
+/// Maximum difference of the steps between depths, relative to the first of them.
 const UNEQUAL: f64 = 1e-6;
 
 impl Map {

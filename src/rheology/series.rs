@@ -34,7 +34,7 @@ const FITTED: f64 = 16.0;
 const CHECKED: f64 = 67.0;
 /// Part of the tolerance that the fit may use, so that the finer check passes.
 const FITTED_SHARE: f64 = 0.9;
-/// Greatest number of decades of a fit. The time of a fit grows with their fourth power: the number of terms grows with
+/// Maximum number of decades of a fit. The time of a fit grows with their fourth power: the number of terms grows with
 /// the decades, and each merger of two terms polishes all the others by least squares, which takes the square of their
 /// number for each sample. Fifty decades take three seconds with a tolerance of 1e-4, and seventeen with 1e-6.
 const MOST_DECADES: f64 = 50.0;

@@ -46,7 +46,7 @@ pub enum Exact<C> {
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub struct FieldReport {
-    /// Estimated error in time of the pressure, Σ |δp| over Σ p; over a hundredth of the greatest force so far, if
+    /// Estimated error in time of the pressure, Σ |δp| over Σ p; over a hundredth of the maximum force so far, if
     /// that is more. `None` while bodies may be about to touch for the first time, or nothing has pressed, and where
     /// a step for the estimate failed.
     pub error: Option<f64>,

@@ -28,8 +28,8 @@ use crate::fields::mesh_error::MeshError;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct ErrorBudget {
-    /// Greatest estimated error in time of a step: of the approach under a given force, of the force under a given
-    /// motion. It is relative to the displacement, or to v = K p, or to a fraction of the greatest so far, whichever is
+    /// Maximum estimated error in time of a step: of the approach under a given force, of the force under a given
+    /// motion. It is relative to the displacement, or to v = K p, or to a fraction of the largest so far, whichever is
     /// greater. 0 for elastic bodies, which have no error in time; `None` before the first step.
     ///
     /// For adaptive steps it is the error that chose their length, or, if greater, the error left by all steps
@@ -40,21 +40,21 @@ pub struct ErrorBudget {
     /// not include its course within the first step. It is down to 0.02 times under a given motion of bodies that begin
     /// to touch, when the first cells touch in part.
     pub time: Option<f64>,
-    /// Greatest estimated error in time of a step in a single cell, relative to the mean in contact. It bounds the
-    /// error of the pressure at a point, and of the greatest pressure. It is largest where a body meets cells faster
+    /// Maximum estimated error in time of a step in a single cell, relative to the mean in contact. It bounds the
+    /// error of the pressure at a point, and of the maximum pressure. It is largest where a body meets cells faster
     /// than the steps resolve, which hardly changes its approach. Where a given approach is to return to a surface
     /// that recovers, or a force jumps up, it includes the error of the cells that the body may meet. `None` before
     /// the first step.
     pub pressure: Option<f64>,
-    /// Greatest estimated error in time of the fields that were sampled so far, Σ |δp| over Σ p
+    /// Maximum estimated error in time of the fields that were sampled so far, Σ |δp| over Σ p
     /// ([`Run::fields_to`](crate::run::Run::fields_to)). The L2 error is about twice as large, relative to the field,
-    /// and the error of the greatest pressure five times. `None` if none has an estimate.
+    /// and the error of the maximum pressure five times. `None` if none has an estimate.
     pub field: Option<f64>,
     /// Errors due to the mesh in the present state, measured on coarser meshes; `None` where they are not measured:
     /// without contact, for a contact of few cells, of surfaces that attract each other, and where
     /// [ranks](crate::parallel) share out the rows. Those of a whole run are measured by a study (feature `study`).
     pub mesh: Option<MeshError>,
-    /// Greatest residual of the contact problems, relative to the displacement.
+    /// Maximum residual of the contact problems, relative to the displacement.
     pub solver: f64,
 }
 

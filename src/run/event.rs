@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result, finite};
 
-/// Differences to the value below this part of the greatest one so far count as none, just after an event.
+/// Differences to the value below this part of the largest one so far count as none, just after an event.
 const NOISE: f64 = 1e-6;
 /// The value that a quantity crosses, and the direction, in [`Run::stop_when`](crate::run::Run::stop_when).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,7 +47,7 @@ pub struct Event<C> {
     side: Option<Side>,
     /// At the end of the step tried; `None` if it has crossed.
     next: Option<Side>,
-    /// Greatest distance of the quantity from the value.
+    /// Maximum distance of the quantity from the value.
     greatest: f64,
     times: Vec<f64>,
     is_met: bool,

@@ -13,7 +13,7 @@ const ACCURACY: f64 = 1e-3;
 
 impl<C: Contact> Run<'_, C> {
     /// The time \[s\] of the maximum of a quantity within the last step, and the maximum; pass the negative for the
-    /// minimum. Adaptive steps are as long as approach or force at their *ends* allow: the greatest pull of a
+    /// minimum. Adaptive steps are as long as approach or force at their *ends* allow: the maximum pull of a
     /// pull-off, the peak of a pressure mostly lie within one.
     ///
     /// The quantity is looked at at eight equal parts of the step, and beside the maximum twice as often until it

@@ -10,22 +10,22 @@ use crate::run::passage::{Passage, Span};
 use crate::run::rises::{Rise, rises};
 use crate::run::trace::{bends, looks};
 
-/// Errors of smaller loads and displacements are relative to this fraction of the greatest of the run.
+/// Errors of smaller loads and displacements are relative to this fraction of the largest of the run.
 const SMALL: f64 = 0.05;
 /// Number of equal parts of a history at whose ends it is evaluated before the run, ...
 const EQUAL_PARTS: i32 = 64;
 /// ... number of times per decade, and of decades before its end, ...
 const TIMES_PER_DECADE: i32 = 4;
 const DECADES: i32 = 12;
-/// ... and greatest number of breakpoints.
+/// ... and maximum number of breakpoints.
 const BREAKPOINTS: usize = 1000;
-/// Lower limit of the greatest force \[N\] and depth \[m\] of a run. Fractions of smaller values underflow, so that no
+/// Lower limit of the maximum force \[N\] and depth \[m\] of a run. Fractions of smaller values underflow, so that no
 /// step would be short enough.
 const LEAST: f64 = 1e-290;
 /// The force of a circular contact over its depth is this part of its response to a small change of the depth.
 const SECANT: f64 = 2.0 / 3.0;
 
-/// Scale of small values in a run: the greatest loads of its history, and an estimate of the displacement that they
+/// Scale of small values in a run: the maximum loads of its history, and an estimate of the displacement that they
 /// cause. At first touch, when bodies part, or under a load that starts like a power of time, errors relative to the
 /// state alone would never become small.
 #[derive(Debug, Clone, Default)]
@@ -37,15 +37,15 @@ pub(super) struct RunScale {
     touch: f64,
     /// Whether bodies pull at each other, so that heights above first touch are loads, too.
     pub(super) attracts: bool,
-    /// Greatest force.
+    /// Maximum force.
     force: f64,
-    /// Greatest prescribed depth below first touch, of the far end of a spring where there is one, and an estimate of
-    /// the greatest v that it requires.
+    /// Maximum prescribed depth below first touch, of the far end of a spring where there is one, and an estimate of
+    /// the largest v that it requires.
     depth: f64,
     stress: f64,
     /// Estimated diameter of the contact under the spring that is driven deepest.
     width: f64,
-    /// Estimated final depth under the greatest force, divided by the final compliance.
+    /// Estimated final depth under the maximum force, divided by the final compliance.
     depth_over_compliance: f64,
     /// Times at which the load bends, ascending.
     pub(super) bends: Vec<f64>,
@@ -204,7 +204,7 @@ impl RunScale {
         self.magnitude(start).max(self.magnitude(end)).max(SMALL * greatest)
     }
 
-    /// Estimated displacement and v under the greatest load of the kind of `load`, in bodies loaded for the time `age`.
+    /// Estimated displacement and v under the maximum load of the kind of `load`, in bodies loaded for the time `age`.
     pub(super) fn expected(&self, scene: &Scene, load: &Load, age: f64) -> [f64; 2] {
         match load {
             Load::Force { .. } if self.depth_over_compliance > 0.0 => {
@@ -224,7 +224,7 @@ impl RunScale {
         if whole > 0.0 { compliance / whole } else { 1.0 }
     }
 
-    /// Estimated mean v under the greatest loads.
+    /// Estimated mean v under the maximum loads.
     pub(super) fn greatest_potential(&self) -> f64 {
         self.depth_over_compliance.max(self.stress)
     }
@@ -250,7 +250,7 @@ impl RunScale {
         if stiffness > 0.0 { stiffness / (1.0 + give * stiffness) } else { 0.0 }
     }
 
-    /// Greatest depth and stiffness, and least give, of such rises that end at `now` or later; the depth and the
+    /// Maximum depth and stiffness, and least give, of such rises that end at `now` or later; the depth and the
     /// stiffness are 0 if there are none.
     fn meeting_after(&self, now: f64, is_meant: impl Fn(&Rise) -> bool) -> Meeting {
         let rises = self.rises.iter().filter(|rise| rise.end >= now && is_meant(rise));

@@ -37,7 +37,7 @@ pub struct StepControl {
     pub(super) since: f64,
     /// Number of rejected steps.
     pub(super) rejected: u64,
-    /// The greatest errors so far; the errors of fields and of the present mesh are added when the budget is read.
+    /// The maximum errors so far; the errors of fields and of the present mesh are added when the budget is read.
     pub(super) worst: ErrorBudget,
     /// The last step of surfaces that attract each other.
     #[cfg_attr(feature = "checkpoint", serde(skip))]

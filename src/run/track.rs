@@ -16,7 +16,7 @@ pub(super) struct Track {
     pub(super) nodes: Vec<(f64, Load)>,
     /// Length of the last step before a corner, and the slope of the load over it, per second of reduced time.
     pub(super) corner: Option<(f64, f64)>,
-    /// Greatest loads and displacements of the run.
+    /// Maximum loads and displacements of the run.
     pub(super) scale: RunScale,
     /// The load within the step under way.
     #[cfg_attr(feature = "checkpoint", serde(skip))]

@@ -84,7 +84,7 @@ impl RowOfCells {
     }
 
     /// The smallest number of points that integrates over a panel exactly, as an index of [`POINTS`]: the error is
-    /// ρ^(−n), ρ of the greatest ellipse about the panel in which the influence is analytic.
+    /// ρ^(−n), ρ of the maximum ellipse about the panel in which the influence is analytic.
     fn points(&self, begin: f64, length: f64) -> Option<usize> {
         let rho = |at: f64| {
             let [x, y] = [(at - begin - 0.5 * length) / (0.5 * length), self.own.aside / (0.5 * length)];

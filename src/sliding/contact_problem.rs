@@ -29,7 +29,7 @@ const FIRST_PART: f64 = 0.3;
 /// The residual may exceed the tolerance so many times: it was brought down to it before the displacement was
 /// computed anew.
 const BELOW: f64 = 1.5;
-/// A negative pressure of this part of the greatest is rounding.
+/// A negative pressure of this part of the largest is rounding.
 const ROUNDING: f64 = 1e-9;
 /// The least range of the gap in contact, over the range of the whole gap, or of the displacement.
 const FLAT: f64 = 1e-4;
@@ -158,7 +158,7 @@ impl Changes {
     }
 }
 
-/// The least and the greatest finite value.
+/// The least and the largest finite value.
 fn range(values: &[f64]) -> [f64; 2] {
     let finite = || values.iter().copied().filter(|value| value.is_finite());
     [finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max)]

@@ -2,7 +2,7 @@
 //! Walker & L. Zhou, Numer. Linear Algebra Appl. 1, 1994). The next direction is the residual where it has shrunk,
 //! else the last image (P. Jiránek & M. Rozložník, ibid. 17, 2010).
 
-/// Greatest number of directions.
+/// Maximum number of directions.
 pub(super) const MOST: usize = 60;
 /// An image of which the others leave less than this part is rounding.
 const LEAST: f64 = 1e-14;

@@ -26,14 +26,14 @@ use crate::kernel::InfluenceKernel;
 use crate::quadrature::GaussLegendre;
 use crate::rheology::Material;
 
-/// Points of a panel, and the greatest change of phase on one.
+/// Points of a panel, and the maximum change of phase on one.
 const POINTS: usize = 16;
 const PHASE: f64 = 8.0;
 /// The rest is negligible beyond this qh.
 const LAST: f64 = 18.0;
 /// The first panel over the least wave number on which anything changes.
 const FIRST: f64 = 1e-3;
-/// Greatest length of the grid over the thickness.
+/// Maximum length of the grid over the thickness.
 pub(super) const THINNEST: f64 = 64.0;
 
 pub(super) struct LayerOnBase {

@@ -232,7 +232,7 @@ impl MovingBodies {
         self.inverse.apply(displacement)
     }
 
-    /// The greatest displacement under a pressure of waves of 1 Pa \[m/Pa\].
+    /// The maximum displacement under a pressure of waves of 1 Pa \[m/Pa\].
     pub(super) fn greatest_compliance(&self) -> f64 {
         self.response.factors.iter().map(|factor| factor.norm()).fold(0.0, f64::max)
     }

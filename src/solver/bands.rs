@@ -27,7 +27,7 @@ named_sums! {
         residual_image: +,
         /// Σ d K d.
         direction_image: +,
-        /// The greatest r.
+        /// The largest r.
         peak: most,
         /// The deepest penetration of cells outside the contact.
         penetration: most,

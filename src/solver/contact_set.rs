@@ -18,7 +18,7 @@ pub(crate) struct ContactSet {
     pub(crate) member: Vec<bool>,
     pub(crate) segments: RowSegments,
     bodies: Vec<BodyContact>,
-    /// The greatest |gap| in contact.
+    /// The largest |gap| in contact.
     pub(crate) greatest_gap: f64,
     /// Number of updates of the set: values that depend on the set are computed anew where this number has changed.
     pub(crate) version: u64,
@@ -46,7 +46,7 @@ impl ContactSet {
         }
     }
 
-    /// Finds the segments of the members, and counts, products and the greatest gap over them.
+    /// Finds the segments of the members, and counts, products and the maximum gap over them.
     pub(crate) fn update(&mut self, problem: &Problem<'_>) {
         self.version += 1;
         self.segments.find(&self.member);

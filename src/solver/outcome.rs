@@ -49,12 +49,12 @@ pub(crate) struct ResidualSums {
     pub(crate) displacement: f64,
     /// Σ of the squares of negative pressures.
     pub(crate) negative: f64,
-    /// The greatest |gap|, before any pressure.
+    /// The largest |gap|, before any pressure.
     pub(crate) greatest_gap: f64,
     /// Rounding of gap and c K p where they are small differences of large parts.
     pub(crate) cancellation: f64,
     pub(crate) cells: usize,
-    /// The greatest −h in contact.
+    /// The largest −h in contact.
     pub(crate) deepest: f64,
     /// The deepest penetration outside the contact.
     pub(crate) penetration: f64,

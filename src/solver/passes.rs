@@ -77,8 +77,8 @@ impl<'a> Passes<'a> {
     }
 
     /// p += a d, v += a K d, with r = motion − (c v + gap) on the cells in contact. Sums Σ B r, Σ r², Σ (c v)² and Σ
-    /// min(p, 0)² over them, and takes the greatest r. Over all other cells that may carry pressure it takes the
-    /// greatest motion − (c v + gap).
+    /// min(p, 0)² over them, and takes the largest r. Over all other cells that may carry pressure it takes the
+    /// maximum motion − (c v + gap).
     pub(crate) fn survey(self, a: f64, search: &Search, solution: &mut Solution) -> &'a [BandSums] {
         let (problem, c) = (self.problem, self.problem.compliance);
         let Solution { motions, pressure, potential, .. } = solution;
@@ -131,7 +131,7 @@ impl<'a> Passes<'a> {
         });
     }
 
-    /// z ← r = motion − (c v + gap) in contact, zero elsewhere; returns Σ r² and the greatest r.
+    /// z ← r = motion − (c v + gap) in contact, zero elsewhere; returns Σ r² and the largest r.
     pub(crate) fn residual(self, solution: &Solution, z: &mut [f64]) -> [f64; 2] {
         let (problem, Solution { motions, potential, .. }) = (self.problem, solution);
         let bands = self.over([z], |Visit { piece, in_contact, outputs: [z], sums, .. }| {

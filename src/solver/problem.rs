@@ -16,7 +16,7 @@ pub(crate) struct Problem<'a> {
     pub(crate) compliance: f64,
     /// Initial gap, history and prescribed motion, hi + u_old − (ω + α·x) \[m\]; +∞ where the indenter has no surface.
     pub(crate) gap: &'a [f64],
-    /// Greatest of the prescribed motions that were subtracted from `gap`; their rounding is in it \[m\].
+    /// Largest of the prescribed motions that were subtracted from `gap`; their rounding is in it \[m\].
     pub(crate) prescribed: f64,
     /// The free motions of each rigid body.
     pub(crate) bodies: &'a [Freedom],

@@ -1,7 +1,7 @@
 use crate::contact::Settings;
 use crate::error::{Result, within};
 
-/// The accuracy of a result: its error relative to the greatest value of the run. It gives the tolerances of a
+/// The accuracy of a result: its error relative to the maximum value of the run. It gives the tolerances of a
 /// [`Study`](crate::study::Study).
 ///
 /// ```

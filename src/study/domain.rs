@@ -14,7 +14,7 @@ use crate::study::scene::StudyScene;
 const OF_TURNING: usize = 16;
 /// Cells along a side of the contacts that find the domain.
 const CELLS: usize = 24;
-/// Greatest number of domains tried, each at most ten times as large or as small as the last.
+/// Maximum number of domains tried, each at most ten times as large or as small as the last.
 const MOST_DOMAINS: usize = 60;
 /// A domain is accepted if the contact spans a fraction of it in this range.
 const FILLED: [f64; 2] = [0.45, 0.92];
@@ -50,7 +50,7 @@ pub(super) struct Domain {
     pub(super) sides: [Side; 2],
     /// Half sides of the rectangle about the origin that contained the contact.
     pub(super) reach: [f64; 2],
-    /// Greatest widths of the contact at any one time.
+    /// Maximum widths of the contact at any one time.
     pub(super) width: [f64; 2],
 }
 
@@ -113,7 +113,7 @@ impl Domain {
         (!sides.contains(&Side::Found)).then_some(Domain { sides, width: [width; 2], ..Domain::default() })
     }
 
-    /// Finds the elastic contacts under the greatest loads on domains of several sizes until they fill one well.
+    /// Finds the elastic contacts under the maximum loads on domains of several sizes until they fill one well.
     pub(super) fn find(scene: &StudyScene<'_>, sides: [Side; 2]) -> Result<Domain> {
         let is_found = sides.map(|side| side == Side::Found);
         let (first, loads) = first_length(scene, sides)?;
@@ -175,7 +175,7 @@ fn greatest_contacts(builder: &Builder, loads: &[Vec<Load>], sides: [Side; 2]) -
 }
 
 /// Initial length L of the domain: a contact of half width L/4 is indented by the gap at its edge, at a level of about
-/// L times this gap. With the greatest loads.
+/// L times this gap. With the maximum loads.
 fn first_length(scene: &StudyScene<'_>, sides: [Side; 2]) -> Result<(f64, Vec<Vec<Load>>)> {
     let line = sides.iter().find_map(|side| if let Side::Uniform(length) = side { Some(*length) } else { None });
     let (mut failed, mut known) = (None, None);

@@ -43,7 +43,7 @@ pub(super) struct Level {
     pub(super) contact: ViscoelasticContact,
     /// Ends of steps; of several at one time, as around jumps, each.
     pub(super) times: Vec<f64>,
-    /// Values of each observable at these times; one of the greatest ones.
+    /// Values of each observable at these times; one of the largest ones.
     pub(super) values: Vec<Vec<f64>>,
     pub(super) fields: Vec<KeptFields>,
     /// The contact of all times.

@@ -36,7 +36,7 @@ const MOST_CELLS: usize = 1 << 18;
 /// what is asked is met. The result is the finest run itself, with the measured error of each quantity.
 ///
 /// # Rule
-/// 1. *Domain*: elastic contacts under the greatest loads, on 24 × 24 cells, then the first run of the study;
+/// 1. *Domain*: elastic contacts under the maximum loads, on 24 × 24 cells, then the first run of the study;
 ///    [`Study::domain`],
 ///    [`Study::period`] and [`Study::line`] give sides instead.
 /// 2. *Time*: on the first mesh, 16 cells across the widest contact, the run is taken with a tolerance and with an
@@ -49,7 +49,7 @@ const MOST_CELLS: usize = 1 << 18;
 ///    most the accuracy, where the [budget](Study::cells) is used up, or where a quantity does not converge on four
 ///    meshes or in time ([`Ending`]).
 ///
-/// Each error is relative to the greatest value of the run. Where the differences do not fall with the cells, as of a
+/// Each error is relative to the maximum value of the run. Where the differences do not fall with the cells, as of a
 /// pressure that is infinite at an edge, the study gives no error, and says so ([`Measured::error`]). A measured
 /// error is a typical size of the true one and no bound: `docs/accuracy.md` has the ratios of random scenes. What no
 /// mesh of the study resolves, such as waves shorter than its cells, is not seen by it.
@@ -161,7 +161,7 @@ impl<'a> Study<'a> {
         self
     }
 
-    /// Asks for the accuracy of a quantity of one's own, at all times relative to its greatest value.
+    /// Asks for the accuracy of a quantity of one's own, at all times relative to its maximum value.
     ///
     /// ```
     /// use viscocontact::prelude::*;

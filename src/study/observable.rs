@@ -4,7 +4,7 @@ use std::fmt;
 
 use crate::fields::Fields;
 
-/// A quantity of a run whose error a [`Study`](crate::study::Study) measures, at all times relative to its greatest
+/// A quantity of a run whose error a [`Study`](crate::study::Study) measures, at all times relative to its largest
 /// value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -16,7 +16,7 @@ pub enum Observable {
     Force,
     /// The contact area.
     ContactArea,
-    /// The greatest pressure of the run. It does not converge under edges and tips, where it is infinite.
+    /// The maximum pressure of the run. It does not converge under edges and tips, where it is infinite.
     GreatestPressure,
 }
 
@@ -24,7 +24,7 @@ pub enum Observable {
 pub(super) enum Reading<'a> {
     /// At the end of each step.
     Value(Box<dyn Fn(Fields<'_>) -> f64 + 'a>),
-    /// The greatest of all steps.
+    /// The largest of all steps.
     Greatest(Box<dyn Fn(Fields<'_>) -> f64 + 'a>),
     /// The pressure at the times that were asked for.
     Pressure,

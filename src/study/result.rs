@@ -54,7 +54,7 @@ impl Mesh {
     }
 }
 
-/// The measured error of a quantity in the finest run, relative to its greatest value.
+/// The measured error of a quantity in the finest run, relative to its maximum value.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -227,7 +227,7 @@ impl StudyResult {
         &self.finest.times
     }
 
-    /// A quantity at [`StudyResult::times`] in the finest run, by its name; the greatest pressure of the run is one
+    /// A quantity at [`StudyResult::times`] in the finest run, by its name; the maximum pressure of the run is one
     /// number.
     pub fn values(&self, name: &str) -> Option<&[f64]> {
         let k = self.quantities.iter().position(|own| own.name == name)?;

@@ -41,7 +41,7 @@ impl StudyScene<'_> {
 }
 
 impl Builder {
-    /// The greatest compliance of the bodies in a run.
+    /// The maximum compliance of the bodies in a run.
     pub(super) fn compliance_until(&self, until: f64) -> Result<f64> {
         let bodies: Vec<_> = [&self.material, &self.counter_body].into_iter().flatten().collect();
         softest_compliance(&bodies, self.temperature.as_ref(), until)

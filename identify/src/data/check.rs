@@ -10,7 +10,7 @@ use crate::statistics::{is_flat, line, mean, range, scatter};
 const LEAST_POINTS: usize = 10;
 /// Blocks of points whose mean forces are compared.
 const BLOCKS: usize = 20;
-/// The greatest mean of a block rises above the scatter of the shallow end by this factor, if there is a contact.
+/// The maximum mean of a block rises above the scatter of the shallow end by this factor, if there is a contact.
 const ABOVE_BASELINE: f64 = 3.0;
 /// 97.5 % of χ² of four degrees of freedom: the moduli, the relaxation time and the contact point of a Zener body.
 const EVIDENCE: f64 = 11.143;
@@ -19,11 +19,11 @@ const BODIES: [(f64, f64); 7] =
     [(f64::INFINITY, 0.0), (0.1, 1.0), (0.03, 1.0), (0.3, 0.0), (0.1, 0.0), (0.03, 0.0), (0.01, 0.0)];
 /// Contact points that are tried, and half the correlations.
 const TRIED: usize = 10;
-/// One minus the correlation that the greatest of those that are tried nearly reaches.
+/// One minus the correlation that the largest of those that are tried nearly reaches.
 const LEAST_CHANGE: f64 = 0.004;
 /// Share of the range of the force by which it differs between the ends of the drive, if the contact is at one of them.
 const OPPOSITE: f64 = 0.25;
-/// Share of the greatest force from which on the tip has certainly touched.
+/// Share of the maximum force from which on the tip has certainly touched.
 const TOUCHED: f64 = 0.1;
 /// Depths over the contact radius that steep pyramids do not reach.
 const STEEPEST: f64 = 4.0;
@@ -86,7 +86,7 @@ impl Curve {
     }
 
     /// Whether the forces are likelier those of a Zener body under a sphere in autoregressive noise than that noise alone, both
-    /// above a constant force, by twice the logarithm of the ratio of their greatest likelihoods (S. S. Wilks, Ann. Math. Stat. 9, 1938).
+    /// above a constant force, by twice the logarithm of the ratio of their maximum likelihoods (S. S. Wilks, Ann. Math. Stat. 9, 1938).
     fn shows_body(&self) -> bool {
         let (times, drive) = (self.experiment.protocol.times(), self.experiment.protocol.drive());
         let (points, duration, [first, last]) = (times.len(), times[times.len() - 1] - times[0], range(drive));

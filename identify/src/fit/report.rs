@@ -27,7 +27,7 @@ pub enum FitWarning {
     Misfit {
         /// Standard deviation of the residuals over that of the noise, from second differences of the force: 1 if the model is right.
         over_noise: f64,
-        /// Standard deviation of the residuals over the greatest force.
+        /// Standard deviation of the residuals over the maximum force.
         over_force: f64,
     },
     /// A curve has a pull-off, less offset, drift, tilt and drag of the fit: the model has none, and [`Curve::until_release`](crate::Curve::until_release) leaves it out.
@@ -167,7 +167,7 @@ impl Fit {
         bare.pull_below(mean(&means), (square / means.len() as f64).sqrt())
     }
 
-    /// What a step on the elastic states of the tip to the greatest contact of a curve warns of.
+    /// What a step on the elastic states of the tip to the maximum contact of a curve warns of.
     fn contact_warnings(&self, curve: usize) -> Vec<FitWarning> {
         let tip = self.curves()[curve].experiment().tip();
         let depth = self.samples(curve).iter().map(|sample| sample.contact_depth).fold(0.0, f64::max);

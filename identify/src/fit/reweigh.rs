@@ -97,7 +97,7 @@ impl Identification {
     }
 }
 
-/// The autoregressive coefficient of the greatest restricted likelihood (H. D. Patterson & R. Thompson, Biometrika 58, 1971), and the order of the
+/// The autoregressive coefficient of the maximum restricted likelihood (H. D. Patterson & R. Thompson, Biometrika 58, 1971), and the order of the
 /// memory: the residuals are those of the problem that is linearised by the rows of the Jacobian from `first` on.
 fn correlation(residuals: &[f64], jacobian: &Mat<f64>, first: usize) -> [f64; 2] {
     let points = residuals.len();

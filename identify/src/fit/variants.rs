@@ -22,7 +22,7 @@ pub struct Variant {
 
 impl Fit {
     /// Size of the misfit: the standard deviation of the residuals over that of the noise (from second differences of the force: 1 if the model is
-    /// right and the noise white), and over the greatest force; the greatest of the curves.
+    /// right and the noise white), and over the maximum force; the largest of the curves.
     pub fn misfit(&self) -> [f64; 2] {
         let of_curve = |curve: usize| {
             let (force, residuals) = (self.curves()[curve].force(), self.residuals(curve));

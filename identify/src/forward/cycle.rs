@@ -22,7 +22,7 @@ use crate::forward::real::Real;
 use crate::forward::tip::{Elastic, Tip};
 use crate::series::Prony;
 
-/// A pressure at the edge of less than this fraction of the greatest is none: the contact is held. The force changes by the square.
+/// A pressure at the edge of less than this fraction of the largest is none: the contact is held. The force changes by the square.
 const HELD: f64 = 1e-12;
 
 /// The end of an interval in which the contact grew.
@@ -70,7 +70,7 @@ pub(crate) struct Cycle<'a, const N: usize> {
     since: Vec<Real<N>>,
     moments: Moments<N>,
     part: Moments<N>,
-    /// Greatest depth \[m\].
+    /// Maximum depth \[m\].
     greatest: f64,
 }
 

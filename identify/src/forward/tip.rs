@@ -8,7 +8,7 @@ use crate::forward::real::Real;
 
 /// Relative distance of the levels from which a slope is taken.
 const NEAR: f64 = 1e-4;
-/// Least depth of a swept tip, relative to the greatest.
+/// Least depth of a swept tip, relative to the largest.
 const TOUCH: f64 = 1e-6;
 /// Cells of a contact that is a power of the depth down to a surface that is known.
 const FEW_CELLS: usize = 12;
@@ -16,7 +16,7 @@ const FEW_CELLS: usize = 12;
 const NODES: usize = 2048;
 /// Exponents of two states that differ by less than this fraction are those of a closed form.
 const CLOSED: f64 = 1e-12;
-/// Greatest exponent of a flat punch, or a cell.
+/// Maximum exponent of a flat punch, or a cell.
 const FLAT: f64 = 1.005;
 
 /// Elastic contact of unit modulus at one depth.

@@ -42,7 +42,7 @@ pub struct OpeningEdge {
     rule: GaussLegendre,
 }
 
-/// The state of a sphere at the greatest pull, of [`OpeningEdge::pull_off`].
+/// The state of a sphere at the maximum pull, of [`OpeningEdge::pull_off`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct PullOff {
@@ -124,7 +124,7 @@ impl OpeningEdge {
     }
 
     /// A sphere of `radius` R \[m\] that rested at an `approach` ω \[m\] until the body was relaxed, and is pulled
-    /// back at the constant `speed` V of the approach \[m/s\]: its state at the greatest pull. With the contact
+    /// back at the constant `speed` V of the approach \[m/s\]: its state at the maximum pull. With the contact
     /// radius a and the relaxed bulk of the body
     ///
     /// W = 4E*a³/3R − √(8π y w E* a³), ω = a²/R − √(2π y w a/E*), da/dt = −v(y),
@@ -167,7 +167,7 @@ impl OpeningEdge {
         self.at(passage.exp())
     }
 
-    /// Force, approach, contact radius, speed of the edge and work at the greatest pull, by implicit steps of the
+    /// Force, approach, contact radius, speed of the edge and work at the maximum pull, by implicit steps of the
     /// contact radius from radius and approach at rest on.
     fn greatest_pull(&self, radius: f64, start: f64, at_rest: f64, speed: f64, steps: usize) -> [f64; 5] {
         // of the relaxed body, at another work of separation

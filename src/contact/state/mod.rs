@@ -25,7 +25,7 @@ pub(crate) struct State {
     /// At the start of the last step.
     pub(crate) previous: Equilibrium,
     pub(crate) start: StepStart,
-    /// The greatest means of displacement and v over the contact so far: errors of smaller ones are relative to parts
+    /// The maximum means of displacement and v over the contact so far: errors of smaller ones are relative to parts
     /// of these.
     pub(crate) greatest: [f64; 2],
 }

@@ -62,7 +62,7 @@ fn first_touch(tried: &Computation, gap: &[f64]) -> f64 {
     tried.state.held.region.rows().least(surface.fold(f64::INFINITY, f64::min))
 }
 
-/// Displacements, and v, below this part of the greatest are measured relative to that part.
+/// Displacements, and v, below this part of the largest are measured relative to that part.
 const SMALL: [f64; 2] = [0.05, 0.2];
 
 /// The means of displacement and v that errors are relative to at least.
@@ -72,7 +72,7 @@ pub(crate) fn least_sizes(state: &State, outlook: &StepContext) -> [f64; 2] {
 
 /// The estimated error in time of the step that was `tried`: under a given force relative to the mean displacement in
 /// contact, under a given motion to the mean of v = K p, both weighted by the pressure. Where they are small, it is
-/// relative to the parts [`SMALL`] of the greatest of the run, expected ones included.
+/// relative to the parts [`SMALL`] of the largest of the run, expected ones included.
 pub(crate) fn error_in_time(scene: &Scene, tried: &Computation, step: &Step<'_>, outlook: &StepContext) -> TimeError {
     let StepContext { expected, on_switch: [one, all], agreement, steps, length_is_given, .. } = *outlook;
     let (Computation { state, trial, .. }, interval) = (tried, step.interval);

@@ -35,7 +35,7 @@ struct Cells {
 }
 
 impl Indenter {
-    /// Greatest slope of the gap on the cells of a region that carry `pressure`, if it is steep. A call of all ranks.
+    /// Maximum slope of the gap on the cells of a region that carry `pressure`, if it is steep. A call of all ranks.
     pub(crate) fn steepest(&self, grid: &Grid, region: &Region, pressure: &[f64]) -> Option<f64> {
         let whole = whole(grid);
         // most indenters are steep nowhere, and steps need not look again
@@ -68,7 +68,7 @@ impl Indenter {
         Slopes { any_steep: squared > STEEP * STEEP, too_flat }
     }
 
-    /// Square of the greatest slope of all cells of the gap, and its greatest finite height above the lowest \[m\].
+    /// Square of the maximum slope of all cells of the gap, and its largest finite height above the lowest \[m\].
     fn greatest_slope_and_relief(&self, cells: Cells) -> [f64; 2] {
         let above = &self.gap.above;
         let squared = (0..above.len()).map(|k| self.squared_slope(cells, k)).fold(0.0, f64::max);

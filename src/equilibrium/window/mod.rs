@@ -54,7 +54,7 @@ impl Window {
     }
 
     /// Solves the contact problem of a step of compliance `c`, from the guess that the trial holds; `prescribed` is the
-    /// greatest motion that was taken from its gap. Where c is 0, the guess is the solution.
+    /// maximum motion that was taken from its gap. Where c is 0, the guess is the solution.
     pub(crate) fn solve(
         &mut self,
         indenter: &Indenter,

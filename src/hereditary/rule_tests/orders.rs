@@ -23,7 +23,7 @@ fn run(body: &CreepSpectrum, history: History, until: f64, steps: usize, interpo
     (1..=steps).map(|step| foundation.step(dt, history(step as f64 * dt))).collect()
 }
 
-/// Orders between doubled numbers of steps: of the greatest errors after the first quarter.
+/// Orders between doubled numbers of steps: of the maximum errors after the first quarter.
 fn orders(name: &str, body: &CreepSpectrum, history: History, until: f64, interpolant: Interpolant) -> [f64; 3] {
     let fine = run(body, history, until, FINE, Interpolant::CorrectedQuadratic);
     let size = fine.iter().copied().fold(0.0, f64::max);

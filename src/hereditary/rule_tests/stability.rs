@@ -59,7 +59,7 @@ impl Free {
     }
 }
 
-/// The greatest sum of absolute values of a row.
+/// The maximum sum of absolute values of a row.
 fn norm(matrix: &[Vec<f64>]) -> f64 {
     matrix.iter().map(|row| row.iter().map(|value| value.abs()).sum()).fold(0.0, f64::max)
 }
@@ -131,7 +131,7 @@ fn no_periodic_sequence_of_steps_grows() {
     }
 }
 
-/// Steps that go on growing, or shrinking, by the same ratio over 24 decades: the greatest that any state becomes.
+/// Steps that go on growing, or shrinking, by the same ratio over 24 decades: the largest that any state becomes.
 #[test]
 fn growing_steps_amplify_little() {
     for interpolant in CORRECTED {

@@ -65,7 +65,7 @@ impl Scenario {
     }
 }
 
-/// Greatest contact radius relative to half the shorter side of the grid.
+/// Maximum contact radius relative to half the shorter side of the grid.
 const MAX_RADIUS: f64 = 0.35;
 
 /// Indenters with a contact radius of at most about `reach` \[m\]. The force is the one under which a sphere of radius

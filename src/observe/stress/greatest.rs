@@ -1,4 +1,4 @@
-//! Where the stress is greatest.
+//! Where the stress is largest.
 
 use super::{Stress, SubsurfaceStress};
 use crate::error::Result;
@@ -9,12 +9,12 @@ use crate::memory;
 const ROUNDS: usize = 8;
 const NARROWER: f64 = 0.4;
 
-/// The point where a stress is greatest, see [`SubsurfaceStress::greatest`].
+/// The point where a stress is largest, see [`SubsurfaceStress::greatest`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct StressPeak {
-    /// The greatest value \[Pa\].
+    /// The maximum value \[Pa\].
     pub value: f64,
     /// Where it is: x1, x2 and the depth \[m\].
     pub position: [f64; 3],
@@ -25,7 +25,7 @@ pub struct StressPeak {
 }
 
 impl SubsurfaceStress {
-    /// The greatest of a quantity of the stress, such as [`Stress::von_mises`] or [`Stress::tresca`], between the
+    /// The largest of a quantity of the stress, such as [`Stress::von_mises`] or [`Stress::tresca`], between the
     /// first and the last of the `depths` \[m\], and its place.
     ///
     /// Sought below the centres of all cells at each of the depths, then refined by parabolas through its neighbours

@@ -25,17 +25,17 @@ use rectangle::Weights;
 use rectangle::corner;
 use waves::Wave;
 
-/// Greatest pressure \[Pa\]: the squares of stresses do not overflow.
+/// Maximum pressure \[Pa\]: the squares of stresses do not overflow.
 const GREATEST_PRESSURE: f64 = 1e150;
-/// Greatest depth \[m\].
+/// Maximum depth \[m\].
 const GREATEST_DEPTH: f64 = 1e100;
-/// Greatest distance of a point from the origin, in depths of the point: powers of the distance do not overflow.
+/// Maximum distance of a point from the origin, in depths of the point: powers of the distance do not overflow.
 const FARTHEST: f64 = 1e40;
 /// The sides of cells along a line, in depths: the farthest distance is nothing beside it.
 const ENDLESS: f64 = 1e60;
 
 /// The stress below the surface of a half-space under a pressure: on planes, on sections, at points, and where it is
-/// greatest. See [`Fields::stress`](crate::fields::Fields::stress).
+/// largest. See [`Fields::stress`](crate::fields::Fields::stress).
 ///
 /// x3 is the depth below the surface, x1 and x2 are the coordinates of the grid; tension is positive, σ33 at the
 /// surface is minus the pressure.

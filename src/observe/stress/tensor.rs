@@ -63,16 +63,16 @@ impl Stress {
         (0.5 * (a * a + b * b + c * c) + 3.0 * shear).sqrt()
     }
 
-    /// The Tresca stress \[Pa\]: the difference of the greatest and the least principal stress, twice the greatest
+    /// The Tresca stress \[Pa\]: the difference of the largest and the least principal stress, twice the largest
     /// shear stress on any plane.
     pub fn tresca(&self) -> f64 {
         let [greatest, _, least] = self.principal();
         greatest - least
     }
 
-    /// The principal stresses \[Pa\], the greatest (most tensile) first.
+    /// The principal stresses \[Pa\], the largest (most tensile) first.
     ///
-    /// By Jacobi's rotations, which are right to rounding of the greatest component however close the principal
+    /// By Jacobi's rotations, which are right to rounding of the maximum component however close the principal
     /// stresses are. The formula by an arc cosine loses half of the digits where two of them coincide, as they do on
     /// the axis below every round contact.
     pub fn principal(&self) -> [f64; 3] {

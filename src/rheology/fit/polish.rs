@@ -3,7 +3,7 @@
 use super::{FittedSeries, Sample, Search, first_time};
 use crate::dense::Matrix;
 
-/// Greatest change of the logarithm of a parameter in one iteration.
+/// Maximum change of the logarithm of a parameter in one iteration.
 const MAX_CHANGE: f64 = 1.5;
 
 /// Levenberg–Marquardt in the logarithms of strengths and times, which keeps both positive. The strength of a term of

@@ -25,7 +25,7 @@ impl FitSample {
     }
 }
 
-/// Greatest root mean square misfit of the nearest series to measurements that are accepted.
+/// Maximum root mean square misfit of the nearest series to measurements that are accepted.
 pub(crate) const MOST_MISFIT: f64 = 0.1;
 /// Creep that is more uncertain than this, within a factor of eleven, is unknown: the number would say nothing.
 const UNKNOWN: f64 = 10.0;
@@ -151,7 +151,7 @@ impl FitReport {
         &self.samples
     }
 
-    /// The greatest relative misfit in absolute value.
+    /// The maximum relative misfit in absolute value.
     pub fn max_misfit(&self) -> f64 {
         self.samples.iter().map(|sample| sample.misfit().abs()).fold(0.0, f64::max)
     }
@@ -162,12 +162,12 @@ impl FitReport {
         (squares / self.samples.len().max(1) as f64).sqrt()
     }
 
-    /// The sample with the greatest misfit; `None` if nothing was fitted.
+    /// The sample with the maximum misfit; `None` if nothing was fitted.
     pub fn worst(&self) -> Option<FitSample> {
         self.samples.iter().copied().max_by(|a, b| a.misfit().abs().total_cmp(&b.misfit().abs()))
     }
 
-    /// The least and greatest positive time \[s\] or angular frequency \[rad/s\] fitted; `None` if nothing
+    /// The least and maximum positive time \[s\] or angular frequency \[rad/s\] fitted; `None` if nothing
     /// was.
     pub fn range(&self) -> Option<[f64; 2]> {
         let positive = || self.samples.iter().map(|sample| sample.x).filter(|x| *x > 0.0);
@@ -180,13 +180,13 @@ impl FitReport {
         self.averaged
     }
 
-    /// Greatest relative deviation of the data from the nearest monotone curve, taken as noise. 0 for monotone data.
+    /// Maximum relative deviation of the data from the nearest monotone curve, taken as noise. 0 for monotone data.
     pub fn wrong_way(&self) -> f64 {
         self.wrong_way
     }
 
     /// The relative error ε of the creep compliance J that is not exceeded at any measured time, for 95 % of tables
-    /// with noise: the compliance of the body is between J/(1 + ε) and J (1 + ε). The greatest of
+    /// with noise: the compliance of the body is between J/(1 + ε) and J (1 + ε). The largest of
     /// [`FitReport::uncertainties`]. 0 for a function, which is sampled as finely as needed.
     pub fn uncertainty(&self) -> f64 {
         self.uncertainties().map(|(_, uncertainty)| uncertainty).fold(0.0, f64::max)

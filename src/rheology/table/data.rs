@@ -153,7 +153,7 @@ pub(crate) fn validated(layout: Layout, rows: &mut [TableRow]) -> Result<Vec<Sam
     Ok(columns.iter().enumerate().flat_map(|(index, &(_, function))| sample(index, function)).collect())
 }
 
-/// The greatest deviation of sorted rows from a monotone curve: an error where it exceeds what the scatter of the
+/// The maximum deviation of sorted rows from a monotone curve: an error where it exceeds what the scatter of the
 /// rows around explains, or the relative `scatter`, if it is stated; a warning, if one row of a hundred or fewer does.
 pub(crate) fn wrong_way(layout: Layout, rows: &[TableRow], scatter: Option<f64>) -> Result<(f64, Option<FitWarning>)> {
     let Layout { table, columns, .. } = layout;

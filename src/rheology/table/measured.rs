@@ -22,7 +22,7 @@ const VALUES_PER_PARAMETER: usize = 3;
 const SMOOTH_MISFIT: f64 = 1e-4;
 /// Times per decade of a smooth spectrum.
 const SMOOTH_DENSITY: f64 = 4.0;
-/// Greatest number of these times, since the cost grows with their third power: over more than twelve decades there are
+/// Maximum number of these times, since the cost grows with their third power: over more than twelve decades there are
 /// fewer per decade.
 const SMOOTH_TIMES: f64 = 48.0;
 /// Factor by which a smooth spectrum extends beyond the times of the search.
@@ -34,7 +34,7 @@ const FOLLOWS: f64 = 5e-4;
 const FOLLOWS_NOISE: f64 = 0.2;
 /// ... at this many points per decade.
 const FOLLOWED: f64 = 8.0;
-/// Greatest number of points over all samples of a table: one over many decades is followed more coarsely.
+/// Maximum number of points over all samples of a table: one over many decades is followed more coarsely.
 const FOLLOWED_IN_ALL: f64 = 64.0;
 
 /// A series fitted to measurements.

@@ -60,6 +60,6 @@ pub(super) struct RunFields<C> {
     pub(super) finder: Box<dyn FieldFinder<C>>,
     /// Whether the run has begun.
     pub(super) is_prepared: bool,
-    /// The greatest error of a field so far.
+    /// The maximum error of a field so far.
     pub(super) worst: Mutex<Option<f64>>,
 }

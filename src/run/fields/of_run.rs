@@ -60,7 +60,7 @@ impl<'a, C: Contact> Run<'a, C> {
         Ok((exact, Some(report)))
     }
 
-    /// The greatest error of the fields so far.
+    /// The maximum error of the fields so far.
     pub(in crate::run) fn worst_field(&self) -> Option<f64> {
         *self.fields.as_ref()?.worst.lock().unwrap_or_else(PoisonError::into_inner)
     }

@@ -121,7 +121,7 @@ impl ActiveSet {
         state
     }
 
-    /// Writes r on A, zero elsewhere, to the buffer; returns Σ r² and the greatest r.
+    /// Writes r on A, zero elsewhere, to the buffer; returns Σ r² and the largest r.
     fn find_residual(&mut self, problem: &Problem<'_>, solution: &Solution) -> [f64; 2] {
         self.set.passes(problem, &mut self.bands).residual(solution, &mut self.buffer)
     }

@@ -95,7 +95,7 @@ struct Level {
     local: Option<Vec<f64>>,
 }
 
-/// Greatest number of levels of which a rank holds the local rows alone: blocks of the next level are as high as a
+/// Maximum number of levels of which a rank holds the local rows alone: blocks of the next level are as high as a
 /// band.
 const MOST_LOCAL: usize = 3;
 

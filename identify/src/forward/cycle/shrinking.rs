@@ -6,7 +6,7 @@ use crate::forward::column::Column;
 use crate::forward::growth::{Growth, Term};
 use crate::forward::real::Real;
 
-/// Columns nearer to the last than this fraction of the greatest depth are as it is.
+/// Columns nearer to the last than this fraction of the maximum depth are as it is.
 const NEAR: f64 = 2e-4;
 
 impl<const N: usize> Cycle<'_, N> {

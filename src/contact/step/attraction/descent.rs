@@ -25,7 +25,7 @@ use crate::load::Load;
 use crate::parallel::for_each_band;
 use crate::solver::Solution;
 
-/// Greatest number of iterations.
+/// Maximum number of iterations.
 const MAX_ITERATIONS: usize = 2000;
 /// A step that raises E is shortened by this factor, so many times.
 const SHORTER: f64 = 0.4;
@@ -69,7 +69,7 @@ pub(super) struct Energy {
 pub(super) struct Gradient {
     /// λ.
     pub(super) multiplier: f64,
-    /// The greatest |r|, over the greatest traction.
+    /// The largest |r|, over the maximum traction.
     pub(super) greatest: f64,
     /// Σ s, and the number of cells at the wall.
     pub(super) attraction: f64,
@@ -134,7 +134,7 @@ enum Place {
 }
 
 impl AttractedStep<'_> {
-    /// The greatest |r| that ends a descent, over the greatest traction: the error is r over the curvature.
+    /// The largest |r| that ends a descent, over the maximum traction: the error is r over the curvature.
     pub(super) fn tolerance(&self, softness: f64) -> f64 {
         self.limit() * (softness / SOFT).clamp(SMALLEST, 1.0)
     }

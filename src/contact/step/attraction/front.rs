@@ -5,7 +5,7 @@
 //! lost, after each success by twice as many, and by at most an eighth of the cells that are left, since the edge may
 //! stop. The trial is kept where the energy falls.
 
-/// Losses count anew where the residual falls to this part, or below so much of the greatest traction.
+/// Losses count anew where the residual falls to this part, or below so much of the maximum traction.
 const FALLEN: f64 = 0.3;
 const FINE: f64 = 0.01;
 /// The part of the contact by which each edge is moved at most.
@@ -39,7 +39,7 @@ impl Front {
         Front { is_line, folded, touching: 0, losses: 0, residual: 0.0, span: 1 }
     }
 
-    /// Looks at the residual, over the greatest traction, and at which cells touch; returns how the profile is to be
+    /// Looks at the residual, over the maximum traction, and at which cells touch; returns how the profile is to be
     /// moved.
     pub(super) fn look(&mut self, residual: f64, cells: usize, touches: impl Fn(usize) -> bool) -> Option<Moved> {
         if !self.is_line {

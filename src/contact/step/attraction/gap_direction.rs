@@ -11,7 +11,7 @@ use crate::sum::scattered;
 
 /// Least curvature of E along a direction, over the curvature of its convex part.
 const LEAST_CURVATURE: f64 = 1e-3;
-/// Where the greatest |r| is a smaller part of the greatest traction, a step of negative curvature leads to the first
+/// Where the largest |r| is a smaller part of the maximum traction, a step of negative curvature leads to the first
 /// minimum; else it has the length of so many steps of the convex part.
 const NEAR: f64 = 0.1;
 const LONGEST: f64 = 4.0;
@@ -24,7 +24,7 @@ const LEAST_DESCENT: f64 = 1e-3;
 /// below this part of κ², or below the least.
 const FOLD: f64 = 0.05;
 const LEAST_FOLD: f64 = 1e-9;
-/// The greatest change of the gap at first on the way from a state that is unstable, in ranges.
+/// The maximum change of the gap at first on the way from a state that is unstable, in ranges.
 const SPAN: f64 = 0.03;
 /// Curvature is measured by a change of the gap by this part of the range.
 const DIFFERENCE: f64 = 1e-4;
@@ -190,8 +190,8 @@ impl Descent<'_> {
         gradient.greatest <= fold.min(self.own.exactness * self.problem.tolerance(soft))
     }
 
-    /// What the least curvature of the state before the step was found to be, less the greatest rise of −s′ since,
-    /// over its greatest value.
+    /// What the least curvature of the state before the step was found to be, less the maximum rise of −s′ since,
+    /// over its maximum value.
     pub(super) fn least_stiffness(&self) -> f64 {
         let Descent { problem, operators, trial, .. } = self;
         let (state, law, initial) = (problem.state, problem.law, operators.window.gap(&problem.step.indenter));

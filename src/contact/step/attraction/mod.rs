@@ -38,14 +38,14 @@ use crate::load::Load;
 use crate::solver::{Counts, Freedom, Stop};
 use edge::attraction_beyond;
 
-/// A step ends where the traction may change, over its greatest value, by less than a limit, by which the force errs: so
+/// A step ends where the traction may change, over its maximum value, by less than a limit, by which the force errs: so
 /// many tolerances of the solver.
 const CHANGE: f64 = 100.0;
 /// The limit is no more than this,
 const MOST_CHANGE: f64 = 1e-4;
 /// unless the tolerance is coarse: then it is this part of the tolerance.
 const SHARE: f64 = 0.3;
-/// Traction of a cell that changed by more than this part of the greatest in the last step is not extrapolated to the
+/// Traction of a cell that changed by more than this part of the largest in the last step is not extrapolated to the
 /// next.
 const GREATEST_CHANGE: f64 = 0.5;
 
@@ -131,7 +131,7 @@ impl AttractedStep<'_> {
         trial.solution.motions[0].0[0] = drive - self.step.indenter.gap().datum - force / stiffness;
     }
 
-    /// The change of s over the greatest traction that ends a step.
+    /// The change of s over the maximum traction that ends a step.
     fn limit(&self) -> f64 {
         let tolerance = self.stop.tolerance;
         (CHANGE * tolerance).min((SHARE * tolerance).max(MOST_CHANGE))

@@ -60,7 +60,7 @@ impl AttractedStep<'_> {
         if self.scene.ground.kernel.periodic_axes() == [false; 2] { 1 } else { 2 }
     }
 
-    /// The greatest distance along an axis between cells that act, over the length of the grid.
+    /// The maximum distance along an axis between cells that act, over the length of the grid.
     fn extent(&self, trial: &Trial) -> f64 {
         let (region, Solution { pressure, attraction, .. }) = (&self.state.held.region, &trial.solution);
         let least = LEAST_ACTION * self.law.traction(0.0);

@@ -20,7 +20,7 @@ pub(crate) struct Attracted {
     /// The least curvature of the energy over the curvature of its convex part, among the directions of the last
     /// descent.
     pub(super) softness: f64,
-    /// The greatest residual of a descent, over what its softness asks for.
+    /// The maximum residual of a descent, over what its softness asks for.
     pub(super) exactness: f64,
     /// Whether a state is looked at for a direction along which the energy bends down, and the least curvature that
     /// this step has found so.
@@ -62,7 +62,7 @@ pub struct PassReport {
     pub passes: usize,
     /// Trials of an iteration that raised the energy, and were given up.
     pub rejected: usize,
-    /// The greatest rise of the energy in a pass, over the sum of its parts, beyond rounding.
+    /// The maximum rise of the energy in a pass, over the sum of its parts, beyond rounding.
     pub rise: f64,
     /// The energy of the state before the step, under the load and the creep of its end, less the energy of the state
     /// at its end \[J\]: the loss of a jump. Where nothing jumps, it is of second order in the length of the step, of

@@ -48,7 +48,7 @@ impl Quotient {
         w[k] * v[k] - self.softened / self.convex * image[k]
     }
 
-    /// Moves v along p to the greatest quotient. p stays apart from v, since their mix would be lost in rounding.
+    /// Moves v along p to the maximum quotient. p stays apart from v, since their mix would be lost in rounding.
     fn raise(&mut self, rows: &Rows, w: &[f64], [v, image]: &mut Direction<'_>, [p, image_of_p]: &mut Direction<'_>) {
         let (now, turn) = ([&**v, &**image], [&**p, &**image_of_p]);
         let [of_vp, of_pp, with_vp, with_pp] = rows.sum_terms(|k| {

@@ -62,7 +62,7 @@ pub struct HeightMap {
     spacing: [f64; 2],
     /// Row-major, x2 fastest; NaN where nothing was measured.
     heights: Vec<f64>,
-    /// The greatest known height; −∞ if there is none.
+    /// The largest known height; −∞ if there is none.
     highest: f64,
     /// Number of missing heights.
     missing: usize,
@@ -78,7 +78,7 @@ debug_by! {
     missing: self.missing, masked: self.masked, center: self.center, periodic: self.periodic
 }
 
-/// One line: numbers of points, lengths, least and greatest height, missing heights.
+/// One line: numbers of points, lengths, least and maximum height, missing heights.
 ///
 /// ```
 /// use viscocontact::prelude::*;
@@ -132,7 +132,7 @@ impl HeightMap {
         map.summarized()
     }
 
-    /// The map with its greatest height and its number of missing heights recomputed.
+    /// The map with its maximum height and its number of missing heights recomputed.
     fn summarized(mut self) -> HeightMap {
         self.highest = self.heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         self.missing = self.heights.iter().filter(|h| h.is_nan()).count();

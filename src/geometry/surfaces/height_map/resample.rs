@@ -22,7 +22,7 @@ pub struct ResampledMap {
 pub struct ResamplingError {
     /// Root mean square \[m\].
     pub rms: f64,
-    /// Greatest magnitude \[m\].
+    /// Maximum magnitude \[m\].
     pub max: f64,
     /// `rms` relative to the rms height of the old map about its mean, at the points compared; 0 for a flat map.
     pub of_rms_height: f64,

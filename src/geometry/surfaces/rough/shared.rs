@@ -23,7 +23,7 @@ pub struct SharedRough {
     /// The local rows.
     grid: Grid,
     heights: Vec<f64>,
-    /// The greatest height on all ranks.
+    /// The maximum height on all ranks.
     highest: f64,
 }
 
@@ -85,7 +85,7 @@ impl SharedRough {
         &self.heights
     }
 
-    /// The greatest height of all rows \[m\].
+    /// The maximum height of all rows \[m\].
     pub fn highest(&self) -> f64 {
         self.highest
     }

@@ -34,7 +34,7 @@ impl Convex for Dense {
     }
 }
 
-/// The greatest eigenvalue of W relative to M on the free cells: of √W M⁻¹ √W, with the rows and columns of M that
+/// The maximum eigenvalue of W relative to M on the free cells: of √W M⁻¹ √W, with the rows and columns of M that
 /// move.
 fn greatest(dense: &Dense, w: &[f64]) -> f64 {
     let free: Vec<usize> = (0..CELLS).filter(|&k| dense.free[k]).collect();

@@ -13,10 +13,10 @@ use crate::error::{Error, FileError, MapError, Result};
 use crate::geometry::HeightMap;
 
 const FORMAT: &str = "X3P";
-/// Greatest size of `main.xml` in bytes and in nodes: an archive may expand a thousandfold.
+/// Maximum size of `main.xml` in bytes and in nodes: an archive may expand a thousandfold.
 const MAX_XML: u64 = 1 << 26;
 const MAX_NODES: u32 = 1 << 23;
-/// Greatest size of the heights in bytes: 16384² in double precision.
+/// Maximum size of the heights in bytes: 16384² in double precision.
 const MAX_DATA: usize = 1 << 31;
 
 const HEIGHT_TYPE: &str = "Record1/Axes/CZ/DataType";

@@ -9,11 +9,11 @@ use crate::geometry::{HeightMap, LengthUnit};
 use crate::input::{Quantity, TableRow, TakenColumn, TextFormat, TextTable, UnitOf, WantedColumn, name, same};
 use crate::memory;
 
-/// Greatest distance of a point from the regular grid, in spacings.
+/// Maximum distance of a point from the regular grid, in spacings.
 const MAX_OFFSET: f64 = 1e-3;
 /// Coordinates closer than this fraction of the spacing are the same.
 const SAME_POSITION: f64 = 1e-2;
-/// Greatest number of grid points per point of the file.
+/// Maximum number of grid points per point of the file.
 const MAX_CELLS_PER_POINT: usize = 100;
 const MAX_CELLS_PER_POINT_OF_PROFILE: usize = 2;
 
