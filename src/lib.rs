@@ -107,10 +107,10 @@
 //!
 //! # Features
 //!
-//! Without features the crate is the stepper with analytic shapes, materials, loads and runs. The other rooms are
-//! features, and `full` is all of them:
+//! Without features the crate is the stepper with analytic shapes, materials, loads and runs. Everything else is behind
+//! a feature, and `full` is all of these:
 //!
-//! | feature | room |
+//! | feature | adds |
 //! |---|---|
 //! | `adhesion` | [`adhesion`], [`contact::Builder::attraction`] |
 //! | `analytic` | [`analytic`] |
@@ -133,7 +133,7 @@
 //! | `temperature` | [`rheology::TimeTemperature`], [`rheology::TemperatureHistory`] |
 //! | `text` | [`input`] |
 //!
-//! Beside the rooms: `rayon` (default): threads, from 2¹⁵ computed cells on. `npy`: NPZ and NPY files. `x3p`: X3P height
+//! Beside them: `rayon` (default): threads, from 2¹⁵ computed cells on. `npy`: NPZ and NPY files. `x3p`: X3P height
 //! maps. `serde`: serialised loads, settings, spectra and reports. `tracing`: events.
 //!
 //! # Limitations

@@ -131,12 +131,12 @@ pub enum Error {
     },
 
     /// A column that this reading of the curve needs was not in the file.
-    #[error("the file has no column of the {column}; {cure}")]
+    #[error("the file has no column of the {column}; {remedy}")]
     NoColumn {
         /// The column.
         column: &'static str,
         /// What to do instead.
-        cure: &'static str,
+        remedy: &'static str,
     },
 
     /// Times in a file do not ascend.

@@ -69,7 +69,7 @@ bitflags! {
         /// the lesser of the slopes to the neighbours on each side, so that a step between two cells does not count.
         const STEEP = 1 << 10;
         /// The zone at the edge of the contact in which the attraction acts is less than 4 cells long at the
-        /// compliance that the bodies have reached: the force of a slow pull-off errs by a percent or more. A fast
+        /// compliance that the bodies have reached: the force of a slow pull-off is off by a percent or more. A fast
         /// pull finds a stiffer body, and a longer zone. Refine the mesh, or take an attraction of longer range.
         const COARSE_ZONE = 1 << 11;
         /// Surfaces that attract each other snapped together or apart within the step: its end is known, not the
@@ -141,7 +141,7 @@ impl IntoIterator for &Warnings {
     }
 }
 
-/// What each warning says, and its cure.
+/// What each warning says, and its remedy.
 const MESSAGES: [(Warnings, &str); 21] = [
     (Warnings::NEAR_EDGE, "contact is within two cells of the edge of the grid: enlarge the grid"),
     (Warnings::FEW_CELLS, "contact is fewer than 8 cells across, of a body or of patches on average: refine the mesh"),

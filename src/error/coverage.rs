@@ -40,7 +40,7 @@ impl fmt::Display for Special {
     }
 }
 
-/// A part of a scene or a call, and the special scenes that do not cover it, each with its cure.
+/// A part of a scene or a call, and the special scenes that do not cover it, each with its remedy.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Case(&'static str, &'static [(Special, &'static str)]);
 
@@ -50,8 +50,8 @@ const STRESS_OF_TRACTION: &str = "make a SubsurfaceStress from ViscoelasticConta
 
 /// A table of cases.
 macro_rules! not_covered {
-    ($($(#[$attribute:meta])* $name:ident: $what:literal, $($special:ident: $cure:expr),+;)*) => {
-        $($(#[$attribute])* pub(crate) const $name: $crate::error::coverage::Case = $crate::error::coverage::Case::new($what, &[$(($special, $cure)),+]);)*
+    ($($(#[$attribute:meta])* $name:ident: $what:literal, $($special:ident: $remedy:expr),+;)*) => {
+        $($(#[$attribute])* pub(crate) const $name: $crate::error::coverage::Case = $crate::error::coverage::Case::new($what, &[$(($special, $remedy)),+]);)*
     };
 }
 
@@ -102,8 +102,8 @@ impl Case {
         Case(what, special)
     }
 
-    fn refused(self, (special, cure): (Special, &'static str)) -> Error {
-        Error::NotCovered { special, what: self.0, cure }
+    fn refused(self, (special, remedy): (Special, &'static str)) -> Error {
+        Error::NotCovered { special, what: self.0, remedy }
     }
 
     /// The error in the first of its special scenes.

@@ -3,7 +3,7 @@
 use crate::error::{Error, KernelError, MaterialError, StepError};
 
 /// What sort of failure an [`Error`] is, for programs that map errors to others. The error itself tells field, value
-/// and cure.
+/// and remedy.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum ErrorKind {

@@ -193,12 +193,12 @@ pub enum MapError {
     },
 
     /// A text is no matrix of heights: it has coordinates.
-    #[error("the text has {found}: use {cure}, or HeightMap::new for a matrix that looks so")]
+    #[error("the text has {found}: use {remedy}, or HeightMap::new for a matrix that looks so")]
     NotAMatrix {
         /// What it has.
         found: &'static str,
         /// What reads it.
-        cure: &'static str,
+        remedy: &'static str,
     },
 
     /// Some heights of a text look like a number for points that were not measured: they are far from all others.

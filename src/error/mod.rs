@@ -88,14 +88,14 @@ use crate::rounded::{rounded, without_noise};
 #[non_exhaustive]
 pub enum Error {
     /// The scene or request is not covered.
-    #[error("{what} is not covered {special}: {cure}")]
+    #[error("{what} is not covered {special}: {remedy}")]
     NotCovered {
         /// What makes the scene special.
         special: Special,
         /// The request, or what the scene has.
         what: &'static str,
         /// What to do.
-        cure: &'static str,
+        remedy: &'static str,
     },
 
     /// A number is outside its allowed range, or not finite.

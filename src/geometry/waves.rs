@@ -21,7 +21,7 @@ pub(crate) struct Missed {
     pub(crate) periods: Option<f64>,
 }
 
-/// Fewer cells resolve a wave badly: the pressure on its crests errs by a tenth.
+/// Fewer cells resolve a wave badly: the pressure on its crests is off by a tenth.
 const LEAST_CELLS: f64 = 4.0;
 /// Relative differences of lengths below this are rounding.
 const ROUNDING: f64 = 1e-6;

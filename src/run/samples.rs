@@ -65,7 +65,7 @@ impl<C: Contact> Sample<'_, C> {
 impl<C: Contact> Run<'_, C> {
     /// The states of the last step, in the order of time: at each time to sample within it ([`Run::sample_at`]), and
     /// at its end; of the first step of a run that does not begin with a jump of its load at its start, too. Times
-    /// that agree but for rounding are one. Each is as exact as the end of the step ([`Run::within_step`]). So a run
+    /// that agree but for rounding are one. Each is as accurate as the end of the step ([`Run::within_step`]). So a run
     /// of few long steps is drawn as a curve, and the steps stay as they are.
     ///
     /// A sample inside the step costs a copy of the contact and a contact problem; the end costs nothing. Where ranks
@@ -130,7 +130,7 @@ impl<C: Contact> Run<'_, C> {
     }
 
     /// The contact at a time within the last step of the run, its ends included, under the load of the history at
-    /// that time: as exact as the steps of the run. See [`ViscoelasticContact::within_step`].
+    /// that time: as accurate as the steps of the run. See [`ViscoelasticContact::within_step`].
     ///
     /// ```
     /// use viscocontact::prelude::*;

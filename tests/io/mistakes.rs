@@ -1,4 +1,4 @@
-//! What typical mistakes print: the value, its range, and the cure.
+//! What typical mistakes print: the value, its range, and the remedy.
 
 use std::path::PathBuf;
 

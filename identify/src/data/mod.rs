@@ -108,10 +108,10 @@ impl Recording {
     /// # Errors
     /// If there is no column of the depth or of the force; those of [`Curve::check`].
     pub fn depth_curve(&self, tip: &Arc<ElasticStates>) -> Result<Curve> {
-        let cure = "name a column 'depth', or use Recording::spring_curve";
-        let depth = self.depth.clone().ok_or(Error::NoColumn { column: "depth", cure })?;
-        let cure = "name a column 'F', or use Recording::spring_curve, which takes a deflection";
-        let force = self.force.clone().ok_or(Error::NoColumn { column: "force", cure })?;
+        let remedy = "name a column 'depth', or use Recording::spring_curve";
+        let depth = self.depth.clone().ok_or(Error::NoColumn { column: "depth", remedy })?;
+        let remedy = "name a column 'F', or use Recording::spring_curve, which takes a deflection";
+        let force = self.force.clone().ok_or(Error::NoColumn { column: "force", remedy })?;
         let curve = Curve::new(Experiment::new(Protocol::new(self.times.clone(), depth)?, Arc::clone(tip)), force)?;
         curve.check().map(|()| curve)
     }
@@ -124,12 +124,12 @@ impl Recording {
     /// [`Curve::check`].
     pub fn spring_curve(&self, tip: &Arc<ElasticStates>, stiffness: f64) -> Result<Curve> {
         positive("stiffness of the spring", stiffness)?;
-        let cure = "name a column 'z', or use Recording::depth_curve";
-        let drive = self.drive.clone().ok_or(Error::NoColumn { column: "drive", cure })?;
+        let remedy = "name a column 'z', or use Recording::depth_curve";
+        let drive = self.drive.clone().ok_or(Error::NoColumn { column: "drive", remedy })?;
         let deflected = || self.deflection.as_ref().map(|column| column.iter().map(|d| stiffness * d).collect());
-        let cure = "name a column 'F' or 'deflection'";
+        let remedy = "name a column 'F' or 'deflection'";
         let force =
-            self.force.clone().or_else(deflected).ok_or(Error::NoColumn { column: "force or deflection", cure })?;
+            self.force.clone().or_else(deflected).ok_or(Error::NoColumn { column: "force or deflection", remedy })?;
         let protocol = Protocol::new(self.times.clone(), drive)?;
         let curve = Curve::new(Experiment::new(protocol, Arc::clone(tip)).with_spring(stiffness)?, force)?;
         curve.check().map(|()| curve)

@@ -97,7 +97,7 @@ pub enum FitWarning {
     Contact {
         /// Index of the curve.
         curve: usize,
-        /// What is outside, with its number and its cure.
+        /// What is outside, with its number and its remedy.
         text: String,
     },
 }

@@ -52,12 +52,12 @@ fn no_table_is_read_as_another() {
     assert!(refused >= 200, "{refused}");
 }
 
-/// What cannot be read, or would be guessed, is refused with its cure.
+/// What cannot be read, or would be guessed, is refused with its remedy.
 #[test]
 fn what_is_no_table_or_map_is_refused_with_its_cure() {
     let (dma, rows) = ("f [Hz],E' [MPa],E'' [MPa]", "0.01,1.50,0.02\n0.1,1.52,0.15\n1,2.25,0.75\n10,2.98,0.15\n");
     let twice = format!("{dma},T [°C]\n{}", [18, 25].map(|t| rows.replace('\n', &format!(",{t}\n"))).concat());
-    for (kind, text, cure) in [
+    for (kind, text, remedy) in [
         (Kind::Table(Dynamic), &*twice, "Isotherm::from_csv_reader"),
         (Kind::Table(Dynamic), &format!("{dma}\n{rows}1,2.24,0.75\n"), "give their mean"),
         (Kind::Table(Dynamic), &format!("{dma}\n{rows}100,3.00,-0.02\n"), "leave out rows"),
@@ -76,7 +76,7 @@ fn what_is_no_table_or_map_is_refused_with_its_cure() {
         (Kind::Recording, "t [s],F [nN],z [um]\n0,0,0\n1,1,1\n0,1,1\n1,0,0\n", "add the end of the segment before"),
     ] {
         let error = read(kind, text.as_bytes()).expect_err(text);
-        assert!(error.contains(cure), "{cure}: {error}\n{text}");
+        assert!(error.contains(remedy), "{remedy}: {error}\n{text}");
     }
 }
 

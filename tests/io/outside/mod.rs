@@ -1,4 +1,4 @@
-//! Scenes outside the model: each is refused, or warns with its number, and says the cure. Scenes inside warn of nothing.
+//! Scenes outside the model: each is refused, or warns with its number, and says the remedy. Scenes inside warn of nothing.
 
 mod limits;
 mod motions;

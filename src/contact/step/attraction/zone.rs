@@ -20,7 +20,7 @@ impl Builder {
     /// it comes off within a step.
     ///
     /// The mesh must resolve the zone in which the attraction acts, of the length E* ρ²/w, or E* over the steepest
-    /// slope of the law if that is less: with 4 cells in it the pull-off force of a sphere errs by up to 0.5 %, with
+    /// slope of the law if that is less: with 4 cells in it the pull-off force of a sphere is off by up to 0.5 %, with
     /// 3 by up to 2.5 %, with 2 by up to 10 %. Below 4, at the modulus that the body has reached, steps warn
     /// ([`Warnings::COARSE_ZONE`](crate::contact::Warnings::COARSE_ZONE)); below 2, at the modulus at once, `build`
     /// fails. A longer range at the same work of separation needs fewer cells.

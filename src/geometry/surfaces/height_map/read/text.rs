@@ -150,8 +150,8 @@ fn without_index(columns: usize, heights: Vec<f64>) -> Result<(usize, Vec<f64>)>
     Ok((columns - 1, heights[columns..].chunks(columns).flat_map(|row| row[1..].to_vec()).collect()))
 }
 
-fn not_a_matrix(found: &'static str, cure: &'static str) -> Error {
-    MapError::NotAMatrix { found, cure }.into()
+fn not_a_matrix(found: &'static str, remedy: &'static str) -> Error {
+    MapError::NotAMatrix { found, remedy }.into()
 }
 
 /// Whether rows of three numbers begin with the coordinates of a grid, each point once.
@@ -277,14 +277,17 @@ mod tests {
             assert_eq!((read(value).missing(), read(f64::NAN).missing()), (1, 0), "{text}");
         }
         assert!(read("9999 9998 1\n2 3 5\n").is_ok());
-        for (text, cure) in [
+        for (text, remedy) in [
             ("0 1\n1 4\n2 9\n", "from_profile"),
             ("% relaxation\n0.01 3.0\n0.1 2.9\n1 2.25\n", "Measurements"),
             ("0 0 1\n1 0 2\n0 1 3\n1 1 No Data\n", "from_xyz"),
             (",0.5,1.0,1.5\n2.5,1,2,3\n5.0,4,5,6\n", "without them"),
         ] {
             let error = read(text).unwrap_err();
-            assert!(matches!(error, Error::Map(MapError::NotAMatrix { cure: c, .. }) if c.contains(cure)), "{error}");
+            assert!(
+                matches!(error, Error::Map(MapError::NotAMatrix { remedy: c, .. }) if c.contains(remedy)),
+                "{error}"
+            );
         }
     }
 }
