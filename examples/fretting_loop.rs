@@ -131,7 +131,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     loops.add_family(Quantity::new("frequency", "Hz"), Style::Line, curves);
     loops.save(args.output.join("loops.png"))?;
     let mut losses = Chart::new(
-        "What a cycle dissipates",
+        "Energy dissipated in a cycle",
         Quantity::new("frequency", "Hz"),
         Quantity::new("energy", "J"),
         Legend::UpperRight,

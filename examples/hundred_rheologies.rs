@@ -73,8 +73,12 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
 
     let history = PiecewiseConstant { switch: TIMES[1] };
     let share = |area: f64| area / (LENGTH * LENGTH);
-    let mut chart =
-        Chart::new("A hundred rheologies on one rough surface", "time [s]", "contact area / all", Legend::UpperLeft);
+    let mut chart = Chart::new(
+        "A hundred rheologies on one rough surface",
+        "time [s]",
+        "contact area / nominal area",
+        Legend::UpperLeft,
+    );
     chart.scale = Scale::LogX;
     let (began, mut steps) = (Instant::now(), 0);
     let exponents: Vec<f64> =

@@ -248,7 +248,7 @@ fn figure_6_as_a_study(args: &Args) -> Result<(), Box<dyn Error>> {
 fn few_steps(few: &[&FewSteps], cells: usize) -> Result<Picture> {
     let scene = if few[0].figure == 5 { StepLoadedSphere::zener() } else { StepLoadedSphere::maxwell() };
     let (units, exact, grid) = (hertz(&scene)?, scene.reference()?, scene.grid(cells)?);
-    let title = "t = 2 τ in few steps, and with the field asked for";
+    let title = "t = 2 τ in few steps, and with the field to 1e-3";
     let mut chart = Chart::new(title, "r / a_H", "p / p_H", Legend::LowerLeft);
     let half = |pressure: &[f64]| -> Vec<(f64, f64)> {
         along_x1(&grid, pressure, units).into_iter().filter(|&(x, p)| x > 0.0 && p > 0.0).collect()

@@ -176,7 +176,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     summary.flush()?;
 
     let mut works = Chart::new(
-        "Greatest pull F over speed",
+        "Maximum pull F over speed: F/(1.5 π R)",
         Quantity::new("speed", "m/s"),
         Quantity::new("apparent work of adhesion", "J/m²"),
         Legend::LowerRight,

@@ -69,7 +69,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         .run(Reach::Level(1.05 * args.pressure * nominal * rubber.contact_compliance(durations[2])))?;
     let quantity = Quantity::new("displacement", "m");
     let mut areas =
-        Chart::new("Contact and what sticks of it", quantity.clone(), "share of the surface", Legend::UpperRight);
+        Chart::new("Contact area and stick area", quantity.clone(), "share of the surface", Legend::UpperRight);
     let mut forces = Chart::new("Force along the surface", quantity, "force over f P", Legend::LowerRight);
     let mut table = csv::Writer::from_path(args.output.join("areas.csv"))?;
     table.write_record(["duration [s]", "displacement [m]", "in contact", "sticks", "force over f P"])?;
@@ -112,12 +112,18 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         areas.add(format!("sticks, {until:.0e} s"), COLORS[n], Style::Line, stick);
         forces.add(format!("{until:.0e} s"), COLORS[n], Style::Line, force);
         if let Some(contact) = half.filter(|_| n == 1) {
+            let pressure = contact.pressure()?;
+            // blank outside the contact
+            let inside = |values: Vec<f64>| -> Vec<f64> {
+                values.into_iter().zip(&pressure).map(|(value, p)| if *p > 0.0 { value } else { f64::NAN }).collect()
+            };
             let mut maps = [
-                Map::new(&grid, contact.pressure()?, Quantity::new("pressure", "Pa"))?,
-                Map::new(&grid, contact.shear()?, Quantity::new("traction along the surface", "Pa"))?,
+                Map::new(&grid, inside(pressure.clone()), Quantity::new("pressure", "Pa"))?,
+                Map::new(&grid, inside(contact.shear()?), Quantity::new("tangential traction", "Pa"))?,
             ];
+            maps.iter_mut().for_each(|map| map.range[0] = 0.0);
             maps[0].title = "pressure".into();
-            maps[1].title = "traction, Q = 0.6 f P".into();
+            maps[1].title = "tangential traction, Q = 0.6 f P".into();
             Map::save_row(&maps, args.output.join("tractions.png"))?;
         }
     }

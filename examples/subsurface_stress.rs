@@ -164,8 +164,9 @@ fn draw(args: &Args, runs: &[(&str, Run)]) -> Result<(), Box<dyn Error>> {
     Map::save_row(&maps, args.output.join("sections.png"))?;
 
     let time = || Quantity::new("time", "s");
-    let mut depth = Chart::new("The point sinks", time(), Quantity::new("depth", "m"), Legend::UpperLeft);
-    let mut relative = Chart::new("Its depth over the contact radius", time(), "z / a", Legend::LowerRight);
+    let mut depth =
+        Chart::new("Depth of the maximum von Mises stress", time(), Quantity::new("depth", "m"), Legend::UpperLeft);
+    let mut relative = Chart::new("The same over the contact radius", time(), "z / a", Legend::LowerRight);
     for chart in [&mut depth, &mut relative] {
         chart.scale = Scale::LogX;
     }

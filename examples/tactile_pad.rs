@@ -86,11 +86,15 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let arm = (contact.normal().contact_area() / std::f64::consts::PI).sqrt();
     (1..=10).try_for_each(|k| take(&mut contact, 0.2, shear.with_torque(0.03 * f64::from(k) * limit * arm)))?;
     table.flush()?;
-    let twisted = maps(&grid, &contact, "and twisted")?;
+    let twisted = maps(&grid, &contact, "sheared and twisted")?;
     Map::save_row(&sheared, args.output.join("sheared.png"))?;
     Map::save_row(&twisted, args.output.join("twisted.png"))?;
-    let mut chart =
-        Chart::new("What sticks of the contact", Quantity::new("time", "s"), "share of the contact", Legend::LowerLeft);
+    let mut chart = Chart::new(
+        "Share of the contact that sticks",
+        Quantity::new("time", "s"),
+        "stick over contact",
+        Legend::LowerLeft,
+    );
     chart.add("sticks", COLORS[0], Style::LineAndDots, sticking);
     chart.save(args.output.join("sticks.png"))?;
     let [work, slip] = contact.work();
@@ -108,11 +112,17 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
 /// Pressure, the size of the traction along the surface, and the slip of the last step.
 fn maps(grid: &Grid, contact: &FrictionContact, title: &str) -> viscocontact::Result<[Map; 3]> {
     let size = |[one, two]: [Vec<f64>; 2]| one.iter().zip(&two).map(|(one, two)| one.hypot(*two)).collect();
+    let pressure = contact.normal().pressure();
+    // blank outside the contact
+    let inside = |values: Vec<f64>| -> Vec<f64> {
+        values.into_iter().zip(pressure).map(|(value, p)| if *p > 0.0 { value } else { f64::NAN }).collect()
+    };
     let mut maps = [
-        Map::new(grid, contact.normal().pressure().to_vec(), Quantity::new("pressure", "Pa"))?,
-        Map::new(grid, size(contact.traction()), Quantity::new("traction along the surface", "Pa"))?,
-        Map::new(grid, size(contact.slip()), Quantity::new("slip in the last step", "m"))?,
+        Map::new(grid, inside(pressure.to_vec()), Quantity::new("pressure", "Pa"))?,
+        Map::new(grid, inside(size(contact.traction())), Quantity::new("tangential traction", "Pa"))?,
+        Map::new(grid, inside(size(contact.slip())), Quantity::new("slip in the last step", "m"))?,
     ];
+    maps.iter_mut().for_each(|map| map.range[0] = 0.0);
     maps.iter_mut().for_each(|map| map.title = title.into());
     Ok(maps)
 }

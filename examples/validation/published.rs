@@ -6,7 +6,7 @@ use viscocontact::prelude::*;
 use crate::claim::{Checked, Outcome};
 use crate::layers::press;
 
-/// Two cylinders of polyamide that roll at 1 m/s (G. Wang & K. Knothe, Acta Mech. 97, 1993), to the printed digits of CONTACT's example `visc_cylindr`.
+/// Two cylinders of polyamide that roll at 1 m/s (G. Wang & K. Knothe, J. Appl. Mech. 60, 1993), to the printed digits of CONTACT's example `visc_cylindr`.
 pub fn rolling_polyamide() -> Outcome {
     let (shear, side) = (0.5 * 1143.0e6, 24.0e-3);
     let grid = Grid::new([512, 1], [side, 1.0])?;

@@ -1,4 +1,4 @@
-//! The convergence study: by how much a result errs in mesh and time, measured by runs.
+//! The convergence study: the error of a result in mesh and time, measured by runs.
 
 mod accuracy;
 mod cost;
@@ -44,7 +44,8 @@ const MOST_CELLS: usize = 1 << 18;
 ///    most 0.4 of the accuracy.
 /// 3. *Mesh*: the run is taken on finer meshes, in the same steps or shorter ones. Of three meshes the differences d₁
 ///    and d₂ show the order p, and 1.25 d₂/(rᵖ − 1) is the error of the finest: the grid convergence index (P. J.
-///    Roache, J. Fluids Eng. 116 (1994) 405). Two meshes have 3 d/(r − 1).
+///    Roache, J. Fluids Eng. 116 (1994) 405). Two meshes have 1.25 d/(r − 1); where no order
+///    of ½ or more is observed, the factor is 3, and p is ½.
 /// 4. It ends where error in time and error of the mesh of all quantities that are [asked](Study::ask) for are at
 ///    most the accuracy, where the [budget](Study::cells) is used up, or where a quantity does not converge on four
 ///    meshes or in time ([`Ending`]).
