@@ -161,7 +161,7 @@ fn check_side(side: f64, layer: Layer) -> Result<()> {
     let longest = side / layer.thickness();
     let field = "longer side of a cell over the thickness of the layer";
     within(field, longest, longest <= LONGEST_CELL, "at most 1000: a thinner layer is a foundation of springs")?;
-    let allowed =
-        "at most 2 for an almost incompressible layer bonded to a rigid base: it is squeezed out, or does not yield";
+    let allowed = "at most 2 for an almost incompressible layer bonded to a rigid base, which is squeezed out or does not \
+                   yield: refine the mesh, or make a line contact by InfluenceKernel::layer_line";
     within(field, longest, longest <= LONGEST_SQUEEZED || !layer.is_squeezed(), allowed).map(drop)
 }
