@@ -22,13 +22,13 @@ use crate::memory;
 /// | history | 8 per relaxation time, and 8 for the change in the last step (16 without elastic response, none of an elastic body); with [`Frame::Indenter`](crate::contact::Frame::Indenter) 40, 16 per relaxation time and 24 (48, none) |
 /// | displacement outside a window | 16, and the history again |
 /// | solver | 29; for each body 0.02 more |
-/// | its preconditioner | 7.4: a quarter of a spectrum of the grid without padding, 2, and the extension of the residual, 5.4, and 12 per column for each thread |
-/// | kernel | 25: a quarter of the padded spectrum, 8, and work space, 17 |
+/// | its preconditioner | 7.4: a quarter of a spectrum of the grid without padding, 2 per cell of the grid, and the extension of the residual, 5.4, and 12 per column for each thread |
+/// | kernel | 25: a quarter of the padded spectrum, 8 per cell of the grid, and work space, 17 |
 /// | transforms on several threads | 16 more |
 /// | attraction between surfaces | 76: its traction at both ends of a step and in the trial, 24, what its steps work in, 48, and the near field of the kernel and its inverse, 4, and 400 to 480 bytes a column for each thread |
 ///
-/// and per cell of the whole grid 8 for the gap, 8 for the pressure where not all cells are computed, 2 if there are
-/// several bodies. Transforms need tables of their own length, which counts in line contacts: 144 bytes per cell.
+/// and per cell of the whole grid 8 for the gap, 2 if there are several bodies; where not all cells are computed, 8 more
+/// for the pressure, and 8 per computed cell for its part of the gap. Transforms need tables of their own length, which counts in line contacts: 144 bytes per cell.
 ///
 /// Counted allocations agree to 5 % and a few kB (`tests/allocations`). Not included: 8 bytes per computed cell from
 /// the first adaptive step of a body with elastic response and memory (16 with a window, 24 with
