@@ -15,7 +15,7 @@ use crate::sliding::complex;
 #[pyfunction]
 pub fn hertz<'py>(py: Python<'py>, radius: f64, modulus: f64, force: f64) -> PyResult<Bound<'py, PyDict>> {
     let of = an::Hertz::new(radius, modulus, force).or_raise()?;
-    Ok(dict! { py; "contact_radius": of.contact_radius, "max_pressure": of.max_pressure, "approach": of.approach })
+    Ok(dict! { py; of { contact_radius, max_pressure, approach } })
 }
 
 /// A sphere on a viscoelastic half-space under a force for which the contact never shrinks (Lee and Radok).
@@ -68,7 +68,7 @@ made_by_calls!(GrowingSphere);
 #[pyfunction]
 pub fn hertz_ellipse<'py>(py: Python<'py>, radii: [f64; 2], modulus: f64, force: f64) -> PyResult<Bound<'py, PyDict>> {
     let of = an::HertzEllipse::new(radii, modulus, force).or_raise()?;
-    Ok(dict! { py; "semi_axes": of.semi_axes, "max_pressure": of.max_pressure, "approach": of.approach })
+    Ok(dict! { py; of { semi_axes, max_pressure, approach } })
 }
 
 /// A rigid flat circular punch of `radius` [m] under `force` [N] at the point (`eccentricity`, 0) [m]: "approach" [m] and "tilt" [rad].
@@ -85,7 +85,7 @@ pub fn rigid_punch<'py>(
     eccentricity: f64,
 ) -> PyResult<Bound<'py, PyDict>> {
     let of = an::RigidPunch::new(radius, modulus, force, eccentricity).or_raise()?;
-    Ok(dict! { py; "approach": of.approach, "tilt": of.tilt })
+    Ok(dict! { py; of { approach, tilt } })
 }
 
 /// Hunter: a cylinder of `radius` [m] that rolls or slides on a body of one retardation time under `force` on a unit of its length [N/m]:
@@ -103,7 +103,7 @@ pub fn rolling_cylinder<'py>(
     reach: f64,
 ) -> PyResult<Bound<'py, PyDict>> {
     let of = an::RollingCylinder::new(radius, compliances, force, reach).or_raise()?;
-    Ok(dict! { py; "half_width": of.half_width, "center": of.center, "friction": of.friction })
+    Ok(dict! { py; of { half_width, center, friction } })
 }
 
 /// Closed forms of bodies that stick: a class of each, its getters, and its functions of a number.
@@ -254,18 +254,17 @@ sticking! {
     ]
 }
 
-/// The edge of a contact that opens on a creeping body (Schapery, Greenwood) under an attraction of `work` [J/m²] and `range` [m].
-///
-/// `zone` is the length of the zone of the attraction over E*ρ²/w: π/4 of a constant traction, about 1.4 of an exponential one. The theory holds
-/// while the bulk of the body is relaxed: with the relaxation time τ, for speeds V τ ≤ 0.03 R^⅓ (w/E*)^⅔ of a sphere of radius R (4 %; 7 % at 0.1).
-///
-/// >>> edge = OpeningEdge(Material(Rheology.relaxing(4e6, 1e6, 0.1)), 0.05, 1e-7)
-/// >>> edge.work(1e-9) < edge.work(1e-4) < 4.1 * 0.05      # from w to w times the ratio of the moduli
-/// True
-#[pyclass(frozen, module = "viscocontact")]
-pub struct OpeningEdge {
-    edge: an::OpeningEdge,
-    recipe: Recipe,
+made! {
+    /// The edge of a contact that opens on a creeping body (Schapery, Greenwood) under an attraction of `work` [J/m²] and `range` [m].
+    ///
+    /// `zone` is the length of the zone of the attraction over E*ρ²/w: π/4 of a constant traction, about 1.4 of an exponential one. The theory holds
+    /// while the bulk of the body is relaxed: with the relaxation time τ, for speeds V τ ≤ 0.03 R^⅓ (w/E*)^⅔ of a sphere of radius R (4 %; 7 % at 0.1).
+    ///
+    /// >>> edge = OpeningEdge(Material(Rheology.relaxing(4e6, 1e6, 0.1)), 0.05, 1e-7)
+    /// >>> edge.work(1e-9) < edge.work(1e-4) < 4.1 * 0.05      # from w to w times the ratio of the moduli
+    /// True
+    #[pyclass(frozen, module = "viscocontact")]
+    OpeningEdge(edge: an::OpeningEdge)
 }
 
 #[pymethods]
@@ -283,7 +282,7 @@ impl OpeningEdge {
         let edge = zone.map_or(Ok(edge.clone()), |zone| edge.with_zone(zone)).or_raise()?;
         let keywords = dict! { py; "zone": zone };
         let recipe = Recipe::new(py, "", (material, work, range))?.with_keywords(Some(&keywords))?;
-        Ok(OpeningEdge { edge, recipe })
+        Ok(OpeningEdge::by(recipe, edge))
     }
 
     /// The work that opens a unit of area [J/m²] at a speed of the edge [m/s].
@@ -295,17 +294,9 @@ impl OpeningEdge {
     /// "contact_radius" [m], "edge_speed" [m/s] and "work" [J/m²]. At speeds beyond the range of the theory the force is too large.
     fn pull_off<'py>(&self, py: Python<'py>, radius: f64, approach: f64, speed: f64) -> PyResult<Bound<'py, PyDict>> {
         let of = free(py, || self.edge.pull_off(radius, approach, speed)).or_raise()?;
-        Ok(dict! { py;
-            "force": of.force,
-            "approach": of.approach,
-            "contact_radius": of.contact_radius,
-            "edge_speed": of.edge_speed,
-            "work": of.work,
-        })
+        Ok(dict! { py; of { force, approach, contact_radius, edge_speed, work } })
     }
 }
-
-made_by_calls!(OpeningEdge);
 
 getters! {OpeningEdge.edge, of:
     /// The length E*ρ²/w of the relaxed body [m].
@@ -328,29 +319,29 @@ getters! {OpeningEdge.edge, of:
 /// gamma : float
 ///     The number γ of the theory, 0 to 1.
 ///
-/// Returns (coefficient of friction, share of the surface in contact).
+/// Returns a dict of the coefficient of "friction" and the "contact_share" of the surface.
 ///
 /// >>> grid = Grid(32, 1e-3)
 /// >>> road = HeightMap.rough(grid, 0.5e-3, 0.1e-3, rms_slope=0.1)
-/// >>> rubber = Rheology.prony(1e6, [(1e7, 1e-4)])
-/// >>> friction, share = persson_friction(grid, road, lambda w: 4 * rubber.complex_modulus(w), 1e5, (1.0, 0.0), 0.5)
-/// >>> 0 < friction < 1 and 0 < share < 1
+/// >>> rubber = Rheology.generalized_maxwell(1e6, [(1e7, 1e-4)])
+/// >>> theory = persson_friction(grid, road, lambda w: 4 * rubber.complex_modulus(w), 1e5, (1.0, 0.0), 0.5)
+/// >>> 0 < theory["friction"] < 1 and 0 < theory["contact_share"] < 1
 /// True
 #[pyfunction]
-pub fn persson_friction(
-    py: Python<'_>,
+pub fn persson_friction<'py>(
+    py: Python<'py>,
     grid: &Grid,
     surface: &Shape,
     modulus: Function,
     pressure: f64,
-    velocity: &Bound<'_, PyAny>,
+    velocity: &Bound<'py, PyAny>,
     gamma: f64,
-) -> PyResult<(f64, f64)> {
+) -> PyResult<Bound<'py, PyDict>> {
     let velocity = crate::sliding::velocity(velocity)?;
     let surface = Arc::clone(&surface.geometry);
     let kept = Kept::default();
     let modulus = |omega| complex(&modulus, omega, &kept);
     let theory = free(py, || an::PerssonFriction::new(&grid.0, &*surface, modulus, pressure, velocity, gamma));
     let theory = kept.raise_or(theory.or_raise())?;
-    Ok((theory.friction, theory.contact_share))
+    Ok(dict! { py; theory { friction, contact_share } })
 }

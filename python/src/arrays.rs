@@ -28,6 +28,29 @@ pub fn column(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
     Ok(values)
 }
 
+/// Refuses a number of values that is not one for each.
+pub fn one_for_each(of: &str, name: &str, given: usize, needed: usize) -> PyResult<()> {
+    if given == needed {
+        return Ok(());
+    }
+    Err(PyValueError::new_err(format!("{name}: {given} given, {needed} needed, one for each {of}")))
+}
+
+/// The pairs of two sequences.
+pub fn together(names: [&str; 2], x: &Bound<'_, PyAny>, y: &Bound<'_, PyAny>) -> PyResult<Vec<(f64, f64)>> {
+    let (x, y) = (column(names[0], x)?, column(names[1], y)?);
+    one_for_each(&format!("of {}", names[0]), names[1], y.len(), x.len())?;
+    Ok(x.into_iter().zip(y).collect())
+}
+
+/// What a builder becomes by a value, if there is one.
+pub fn if_given<B, V>(builder: B, value: Option<V>, with: impl FnOnce(B, V) -> B) -> B {
+    match value {
+        Some(value) => with(builder, value),
+        None => builder,
+    }
+}
+
 /// The rows of a table of so many columns, none of its numbers NaN.
 pub fn table<const N: usize>(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Vec<[f64; N]>> {
     rows(name, values(name, object)?)
@@ -98,6 +121,19 @@ fn no_nan(name: &str, values: &[f64]) -> PyResult<()> {
 /// A field as a new array of the shape of the grid.
 pub fn to_array<'py>(py: Python<'py>, values: Vec<f64>, shape: &[usize]) -> PyResult<Array<'py>> {
     values.into_pyarray(py).reshape(shape.to_vec())
+}
+
+/// A sequence as an array.
+pub fn line<'py>(py: Python<'py>, values: Vec<f64>) -> PyResult<Array<'py>> {
+    let n = values.len();
+    to_array(py, values, &[n])
+}
+
+/// Pairs as the rows of an array.
+pub fn rows_of<'py>(py: Python<'py>, pairs: impl IntoIterator<Item = (f64, f64)>) -> PyResult<Array<'py>> {
+    let values: Vec<f64> = pairs.into_iter().flat_map(|(one, other)| [one, other]).collect();
+    let n = values.len() / 2;
+    to_array(py, values, &[n, 2])
 }
 
 /// Columns as arrays, by name.

@@ -157,18 +157,17 @@ impl ViscoelasticContact {
     /// A step at whose end `shape` is where `position(t)` [m] puts it, a function of time that returns (x1, x2), or a pair of start
     /// [m] and velocity [m/s]; `track` adds the gap of a fixed shape. The bodies do not move. Ctrl-C waits for the end of the step.
     ///
-    /// Returns the report and (position, lateral force [N], power [W]).
+    /// Returns the report, and a dict of the "position" [m], the "lateral_force" [N] (`slope_force` of the shape) and the "power" [W].
     #[pyo3(signature = (shape, position, dt, load, *, track=None))]
-    #[allow(clippy::type_complexity)]
-    fn step_along(
+    fn step_along<'py>(
         mut slf: Taken<'_, Self>,
-        py: Python<'_>,
+        py: Python<'py>,
         shape: &Shape,
-        position: Bound<'_, PyAny>,
+        position: Bound<'py, PyAny>,
         dt: f64,
         load: &Load,
         track: Option<&Shape>,
-    ) -> PyResult<(StepReport, ([f64; 2], [f64; 2], f64))> {
+    ) -> PyResult<(StepReport, Bound<'py, PyDict>)> {
         let shape = Arc::clone(&shape.geometry);
         let mut travel = if position.is_callable() {
             let function: Function = position.extract()?;
@@ -182,7 +181,7 @@ impl ViscoelasticContact {
         }
         let load = load.load;
         let report = slf.compute(py, |contact, _| contact.step_along(&travel, dt, load))?;
-        Ok((StepReport(report.step), (report.position, report.lateral_force, report.power)))
+        Ok((StepReport(report.step), dict! { py; report { position, lateral_force, power } }))
     }
 
     /// Replaces the shapes between two steps, moved or changed: a shape, an array of gaps, or a sequence with one for each body.

@@ -156,9 +156,7 @@ impl Curve {
     /// The force [N].
     #[getter]
     fn force<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
-        let force = self.of.force().to_vec();
-        let n = force.len();
-        to_array(py, force, &[n])
+        line(py, self.of.force().to_vec())
     }
 
     /// The part from the first time to before the last one [s].
@@ -198,12 +196,7 @@ impl Curve {
     fn oliver_pharr<'py>(&self, py: Python<'py>, contact_point: f64, area: Function) -> PyResult<Bound<'py, PyDict>> {
         let area = |h: f64| raised_number(area.call((h,)), f64::NAN);
         let of = free(py, || id::usual::oliver_pharr(&self.of, contact_point, area)).or_raise()?;
-        Ok(dict! { py;
-            "stiffness": of.stiffness,
-            "contact_depth": of.contact_depth,
-            "area": of.area,
-            "modulus": of.modulus,
-        })
+        Ok(dict! { py; of { stiffness, contact_depth, area, modulus } })
     }
 
     /// Checks points, signs and units; raises ValueError with the cure.
@@ -227,11 +220,7 @@ impl Curve {
     #[pyo3(signature = (contact_point=None))]
     fn loading_modulus<'py>(&self, py: Python<'py>, contact_point: Option<f64>) -> PyResult<Bound<'py, PyDict>> {
         let of = free(py, || id::usual::loading_modulus(&self.of, contact_point)).or_raise()?;
-        Ok(dict! { py;
-            "modulus": of.modulus,
-            "offset": of.offset,
-            "contact_point": of.contact_point,
-        })
+        Ok(dict! { py; of { modulus, offset, contact_point } })
     }
 
     /// The relaxation of a hold as E∞ + E₁ exp(−t/τ), with the `correction` of its ramp ("step", "half_ramp" or "factor"): "equilibrium",
@@ -247,12 +236,7 @@ impl Curve {
         let correction =
             choice("correction", correction, &[("step", Step), ("half_ramp", HalfRamp), ("factor", Factor)])?;
         let of = free(py, || id::usual::hold_relaxation(&self.of, contact_point, correction)).or_raise()?;
-        Ok(dict! { py;
-            "equilibrium": of.equilibrium,
-            "relaxing": of.relaxing,
-            "glassy": of.glassy(),
-            "time": of.time,
-        })
+        Ok(dict! { py; of { equilibrium, relaxing, time }, "glassy": of.glassy() })
     }
 
     /// The experiment.
@@ -269,6 +253,17 @@ impl Curve {
         visit.call(&self.tip)
     }
 }
+
+/// A column of a recording, by name.
+type Column = (&'static str, fn(&id::Recording) -> Option<&Vec<f64>>);
+
+const COLUMNS: [Column; 5] = [
+    ("time", |of| Some(&of.times)),
+    ("force", |of| of.force.as_ref()),
+    ("deflection", |of| of.deflection.as_ref()),
+    ("drive", |of| of.drive.as_ref()),
+    ("depth", |of| of.depth.as_ref()),
+];
 
 /// The columns of a measured curve, from arrays or a text file with headings.
 ///
@@ -301,23 +296,18 @@ impl Recording {
         let times = column("times", times)?;
         let n = times.len();
         let given = |name: &str, values: Option<&Bound<'_, PyAny>>| -> PyResult<Option<Vec<f64>>> {
-            let Some(values) = values.map(|values| column(name, values)).transpose()? else { return Ok(None) };
-            let m = values.len();
-            if m == n {
-                Ok(Some(values))
-            } else {
-                Err(PyValueError::new_err(format!("{name}: {m} given, {n} needed, one for each time")))
-            }
+            let values = values.map(|values| column(name, values)).transpose()?;
+            one_for_each("time", name, values.as_ref().map_or(n, Vec::len), n)?;
+            Ok(values)
         };
         let (force, deflection) = (given("force", force)?, given("deflection", deflection)?);
         let (drive, depth) = (given("drive", drive)?, given("depth", depth)?);
         let recording = id::Recording { times, force, deflection, drive, depth, columns: Vec::new() };
-        let columns = [&recording.force, &recording.deflection, &recording.drive, &recording.depth];
         let refused = |what: &str| Err(PyValueError::new_err(what.to_owned()));
         if !recording.times.is_sorted_by(|one, next| one < next) {
             return refused("times: they must ascend, each once");
         }
-        if columns.into_iter().flatten().next().is_none() {
+        if COLUMNS[1..].iter().all(|(_, column)| column(&recording).is_none()) {
             return refused("give force or deflection, and drive or depth: there is no column but the times");
         }
         Ok(Recording(recording))
@@ -353,13 +343,9 @@ impl Recording {
     /// The arrays of a pickle; what a file named its columns is not kept.
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
         let (py, of) = (slf.py(), &slf.get().0);
-        let array = |values: &Option<Vec<f64>>| values.clone().map(|values| values.into_pyarray(py));
-        let keywords = dict! { py;
-            "force": array(&of.force),
-            "deflection": array(&of.deflection),
-            "drive": array(&of.drive),
-            "depth": array(&of.depth),
-        };
+        let array = |values: Option<&Vec<f64>>| values.map(|values| values.to_vec().into_pyarray(py));
+        let keywords = PyDict::new(py);
+        COLUMNS[1..].iter().try_for_each(|(name, column)| keywords.set_item(name, array(column(of))))?;
         let recipe = Recipe::new(py, "", (of.times.clone().into_pyarray(py),))?;
         recipe.with_keywords(Some(&keywords))?.reduce(slf.get_type())
     }
@@ -369,26 +355,14 @@ impl Recording {
     }
 
     fn __repr__(&self) -> String {
-        let given = [
-            ("force", &self.0.force),
-            ("deflection", &self.0.deflection),
-            ("drive", &self.0.drive),
-            ("depth", &self.0.depth),
-        ];
-        let names: Vec<&str> = given.into_iter().filter_map(|(name, column)| column.as_ref().map(|_| name)).collect();
+        let given = COLUMNS[1..].iter().filter(|(_, column)| column(&self.0).is_some());
+        let names: Vec<&str> = given.map(|(name, _)| *name).collect();
         format!("Recording({} times, {})", self.0.times.len(), names.join(", "))
     }
 
     /// A column by its name: "time", "force", "deflection", "drive" or "depth"; None without it.
     fn column<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Option<Bound<'py, PyAny>>> {
-        let names = [("time", 0), ("times", 0), ("force", 1), ("deflection", 2), ("drive", 3), ("depth", 4)];
-        let column = match choice("name", name, &names)? {
-            0 => Some(&self.0.times),
-            1 => self.0.force.as_ref(),
-            2 => self.0.deflection.as_ref(),
-            3 => self.0.drive.as_ref(),
-            _ => self.0.depth.as_ref(),
-        };
+        let column = choice("name", if name == "times" { "time" } else { name }, &COLUMNS)?(&self.0);
         Ok(column.map(|column| column.to_vec().into_pyarray(py).into_any()))
     }
 

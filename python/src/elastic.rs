@@ -54,12 +54,9 @@ impl ElasticContact {
         for shape in &shapes {
             builder = builder.another_body(shape);
         }
-        if let Some(kernel) = kernel {
-            builder = builder.kernel(Arc::clone(&kernel.kernel));
-        }
-        if let Some(options) = options {
-            builder = builder.settings(settings(Settings::default(), options)?);
-        }
+        let settings = options.map(|options| settings(Settings::default(), options)).transpose()?;
+        builder = if_given(builder, kernel, |builder, kernel| builder.kernel(Arc::clone(&kernel.kernel)));
+        let builder = if_given(builder, settings, |builder, settings| builder.settings(settings));
         let contact = free(py, || builder.build()).or_raise()?;
         Ok(ElasticContact { contact, cancel: Arc::default() })
     }
@@ -72,11 +69,11 @@ impl ElasticContact {
         let loads = loads(load)?;
         let ElasticContact { contact, cancel, .. } = &mut *slf;
         let report = interruptible(py, true, cancel, || contact.solve_unless(cancel, &loads))?;
+        let warnings: Vec<String> = report.messages().map(in_python).collect();
         Ok(dict! { py;
-            "iterations": report.iterations,
+            report { iterations, residual },
             "convolutions": report.convolution_equivalents(),
-            "residual": report.residual,
-            "warnings": report.messages().collect::<Vec<_>>(),
+            "warnings": warnings,
         })
     }
 
@@ -102,11 +99,7 @@ impl ElasticContact {
 
     fn __repr__(slf: Shared<'_, Self>) -> PyResult<String> {
         let of = slf.shown()?;
-        let [n1, n2] = of.grid().cells();
-        Ok(format!(
-            "ElasticContact({n1} × {n2} cells, force={} N, approach={} m)",
-            digits(of.force()),
-            digits(of.approach())
-        ))
+        let ([n1, n2], [force, approach]) = (of.grid().cells(), [of.force(), of.approach()].map(digits));
+        Ok(format!("ElasticContact({n1} × {n2} cells, force={force} N, approach={approach} m)"))
     }
 }

@@ -3,6 +3,7 @@
 use std::cell::RefCell;
 use std::error::Error as StdError;
 use std::io;
+use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
 use crate::prelude::*;
@@ -30,6 +31,11 @@ create_exception!(
 /// Raises the errors of both crates, at the end of a call: first what a function of the user raised in it, whether the crate noticed or not.
 pub trait OrRaise<T> {
     fn or_raise(self) -> PyResult<T>;
+}
+
+/// What cannot fail, in a list of what can.
+pub fn sure<T>(value: T) -> viscocontact::Result<T> {
+    Ok(value)
 }
 
 impl<T> OrRaise<T> for Result<T, Error> {
@@ -69,6 +75,14 @@ pub fn raise(error: &Error) -> PyErr {
         ErrorKind::Convergence => ConvergenceError::new_err(text),
         ErrorKind::Unsupported => PyNotImplementedError::new_err(text),
         _ => PyValueError::new_err(text),
+    }
+}
+
+/// The error of a file that cannot be opened, as the crate says it.
+pub fn unreadable(path: &Path) -> impl FnOnce(io::Error) -> PyErr {
+    move |error| {
+        let (file, reason, kind) = (path.display().to_string(), error.to_string(), Some(error.kind()));
+        raise(&FileError::Unreadable { file, reason, kind }.into())
     }
 }
 

@@ -179,12 +179,8 @@ impl Fit {
     fn decades<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
         let decades = self.watched(py, id::Fit::decades)?;
         let of = |of: id::Decade| {
-            Ok(dict! { py;
-                "times": (of.times[0], of.times[1]),
-                "modulus": of.modulus,
-                "deviation": of.deviation,
-                "is_determined": of.is_determined,
-            })
+            let times: (f64, f64) = of.times.into();
+            Ok(dict! { py; of { modulus, deviation, is_determined }, "times": times })
         };
         decades.into_iter().map(of).collect()
     }
@@ -209,20 +205,15 @@ impl Fit {
     ) -> PyResult<(Array<'py>, f64)> {
         let scene = builder(grid, shape, &self.material(py)?, options)?;
         let of = self.watched(py, |fit| fit.verify(curve, &scene))?;
-        let n = of.force.len();
-        Ok((to_array(py, of.force, &[n])?, of.difference))
+        Ok((line(py, of.force)?, of.difference))
     }
 
     /// What the answer depends on: fits of the same curves under another assumption ("drift", "tilt", "correlated noise", "no outliers"):
     /// dicts of the "assumption", "times" [s], the "ratios" of their moduli to those of this fit, and "aicc_difference".
     fn variants<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
         let of = |of: id::Variant| {
-            Ok(dict! { py;
-                "assumption": of.assumption,
-                "times": of.times.to_vec(),
-                "ratios": of.ratios.to_vec(),
-                "aicc_difference": of.aicc_difference,
-            })
+            let (times, ratios) = (of.times.to_vec(), of.ratios.to_vec());
+            Ok(dict! { py; of { assumption, aicc_difference }, "times": times, "ratios": ratios })
         };
         self.watched(py, |fit| Ok(fit.variants()))?.into_iter().map(of).collect()
     }

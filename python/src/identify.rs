@@ -39,17 +39,26 @@ fn nuisance(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Option<id::Nuisanc
     }
 }
 
+/// A property of the measurement, by name.
+type OfCurves = (&'static str, fn(id::Identification, id::PerCurve) -> id::Identification);
+
+const OF_CURVES: [OfCurves; 6] = [
+    ("contact_point", id::Identification::contact_point),
+    ("offset", id::Identification::offset),
+    ("drift", id::Identification::drift),
+    ("tilt", id::Identification::tilt),
+    ("drag", id::Identification::drag),
+    ("stiffness", id::Identification::stiffness),
+];
+
 const OPTIONS: &str = "contact_point offset drift tilt drag stiffness noise known_sigma robust fix start";
 
 /// The identification with an option of this name.
 fn option(of: id::Identification, name: &str, given: &Bound<'_, PyAny>) -> PyResult<id::Identification> {
-    let known = || per_curve(name, given);
-    let set = |set: fn(id::Identification, id::PerCurve) -> id::Identification, of: id::Identification| {
-        Ok::<_, PyErr>(match known()? {
-            Some(known) => set(of, known),
-            None => of,
-        })
-    };
+    let mut curves = OF_CURVES.iter();
+    if let Some((_, set)) = curves.find(|(own, _)| *own == name) {
+        return Ok(if_given(of, per_curve(name, given)?, set));
+    }
     let names = of.model().parameters();
     let each = |of: id::Identification, give: fn(id::Identification, &str, f64) -> id::Identification| {
         named(given.cast()?)?.into_iter().try_fold(of, |of, (name, value)| match names.contains(&name) {
@@ -58,12 +67,6 @@ fn option(of: id::Identification, name: &str, given: &Bound<'_, PyAny>) -> PyRes
         })
     };
     match name {
-        "contact_point" => set(id::Identification::contact_point, of),
-        "offset" => set(id::Identification::offset, of),
-        "drift" => set(id::Identification::drift, of),
-        "tilt" => set(id::Identification::tilt, of),
-        "drag" => set(id::Identification::drag, of),
-        "stiffness" => set(id::Identification::stiffness, of),
         "noise" => Ok(of.noise(match (given.extract::<f64>(), given.extract::<&str>()) {
             (Ok(coefficient), _) => id::Noise::AutoregressiveWith(coefficient),
             (_, Ok("white")) => id::Noise::White,
@@ -78,34 +81,33 @@ fn option(of: id::Identification, name: &str, given: &Bound<'_, PyAny>) -> PyRes
     }
 }
 
-/// A model of the material, and what is known of the measurement: fits curves, and gives bounds before an experiment.
-///
-/// Parameters
-/// ----------
-/// model : "elastic", "maxwell", "zener", ("prony", n), ("power_law", cutoff [s]), ("power_law_solid", cutoff [s]), "stretched" or "fractional_zener"
-/// contact_point, offset, drift, tilt, drag, stiffness : float (known), True (fitted), or ("from", start)
-///     Drive at first touch [m], force without contact [N], its growth in time [N/s] and with the drive [N/m], force over the speed of the
-///     drive [N s/m], and the stiffness of the spring [N/m] in place of that of the experiments. A list has one for each curve.
-/// noise : "white" (default), "autoregressive", or the coefficient of an autoregressive noise
-/// known_sigma : float, optional
-///     Standard deviation of the noise [N].
-/// robust : bool
-///     Whether outliers lose their weight.
-/// fix, start : dict
-///     Parameters of the material that are known, and where the search for others starts.
-///
-/// >>> import numpy as np
-/// >>> tip = ElasticStates.sphere(5e-6)
-/// >>> experiment = Experiment.trapezoid(1e-6, (1.0, 3.0, 1.0), 0.01, tip)
-/// >>> zener = Identification("zener")
-/// >>> force, depth = zener.respond(experiment, {"E0": 4000.0, "Einf": 2000.0, "tau": 0.5})
-/// >>> fit = zener.fit(Curve(experiment, force + 1e-11 * np.random.default_rng(0).normal(size=len(force))))
-/// >>> abs(fit["tau"].value / 0.5 - 1) < 0.01
-/// True
-#[pyclass(frozen, module = "viscocontact")]
-pub struct Identification {
-    pub of: id::Identification,
-    recipe: Recipe,
+made! {
+    /// A model of the material, and what is known of the measurement: fits curves, and gives bounds before an experiment.
+    ///
+    /// Parameters
+    /// ----------
+    /// model : "elastic", "maxwell", "zener", ("prony", n), ("power_law", cutoff [s]), ("power_law_solid", cutoff [s]), "stretched" or "fractional_zener"
+    /// contact_point, offset, drift, tilt, drag, stiffness : float (known), True (fitted), or ("from", start)
+    ///     Drive at first touch [m], force without contact [N], its growth in time [N/s] and with the drive [N/m], force over the speed of the
+    ///     drive [N s/m], and the stiffness of the spring [N/m] in place of that of the experiments. A list has one for each curve.
+    /// noise : "white" (default), "autoregressive", or the coefficient of an autoregressive noise
+    /// known_sigma : float, optional
+    ///     Standard deviation of the noise [N].
+    /// robust : bool
+    ///     Whether outliers lose their weight.
+    /// fix, start : dict
+    ///     Parameters of the material that are known, and where the search for others starts.
+    ///
+    /// >>> import numpy as np
+    /// >>> tip = ElasticStates.sphere(5e-6)
+    /// >>> experiment = Experiment.trapezoid(1e-6, (1.0, 3.0, 1.0), 0.01, tip)
+    /// >>> zener = Identification("zener")
+    /// >>> force, depth = zener.respond(experiment, {"E0": 4000.0, "Einf": 2000.0, "tau": 0.5})
+    /// >>> fit = zener.fit(Curve(experiment, force + 1e-11 * np.random.default_rng(0).normal(size=len(force))))
+    /// >>> abs(fit["tau"].value / 0.5 - 1) < 0.01
+    /// True
+    #[pyclass(frozen, module = "viscocontact")]
+    Identification(pub of: id::Identification)
 }
 
 #[pymethods]
@@ -131,7 +133,7 @@ impl Identification {
             }
         }
         of.check().or_raise()?;
-        Ok(Identification { of, recipe: Recipe::new(py, "", (model,))?.with_keywords(Some(&options))? })
+        Ok(Identification::by(Recipe::new(py, "", (model,))?.with_keywords(Some(&options))?, of))
     }
 
     /// Fits a curve, or several of one material together.
@@ -193,9 +195,8 @@ impl Identification {
         let named = named(values)?;
         let named: Vec<(&str, f64)> = named.iter().map(|(name, value)| (&**name, *value)).collect();
         let samples = free(py, || self.of.respond(&experiment.of, &named)).or_raise()?;
-        let n = [samples.len()];
         let (force, depth) = samples.iter().map(|sample| (sample.force, sample.depth)).unzip();
-        Ok((to_array(py, force, &n)?, to_array(py, depth, &n)?))
+        Ok((line(py, force)?, line(py, depth)?))
     }
 
     /// The least standard deviations that any unbiased estimate from experiments can have, by parameter: relative for moduli, times and
@@ -215,8 +216,6 @@ impl Identification {
         Ok(bounds.names.iter().filter_map(|name| Some((name.clone(), bounds.deviation(name)?))).collect())
     }
 }
-
-made_by_calls!(Identification);
 
 getters! {Identification.of, of:
     /// Names of the parameters of the model.

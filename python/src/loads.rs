@@ -3,14 +3,13 @@
 use crate::prelude::*;
 use viscocontact::load::{self as ld, LoadHistory as History};
 
-/// The load on a rigid body at the end of a step: a force, an approach, or a spring that drives it.
-///
-/// >>> Load.force(1.0), Load.approach(1e-6), Load.spring(10.0, 2e-6)
-/// (Load.force(1.0), Load.approach(1e-06), Load.spring(10.0, 2e-06))
-#[pyclass(frozen, module = "viscocontact")]
-pub struct Load {
-    pub load: ld::Load,
-    recipe: Recipe,
+made! {
+    /// The load on a rigid body at the end of a step: a force, an approach, or a spring that drives it.
+    ///
+    /// >>> Load.force(1.0), Load.approach(1e-6), Load.spring(10.0, 2e-6)
+    /// (Load.force(1.0), Load.approach(1e-06), Load.spring(10.0, 2e-06))
+    #[pyclass(frozen, module = "viscocontact")]
+    Load(pub load: ld::Load)
 }
 
 /// A number for each axis; None where another property of the axis is given.
@@ -44,7 +43,7 @@ impl Load {
         if fixed.iter().flatten().any(|angle| *angle != 0.0) {
             keywords.set_item("tilt", PyTuple::new(py, fixed)?)?;
         }
-        Ok(Load { load, recipe: recipe.with_keywords(Some(&keywords))? })
+        Ok(Load::by(recipe.with_keywords(Some(&keywords))?, load))
     }
 }
 
@@ -76,26 +75,17 @@ impl Load {
     }
 }
 
-made_by_calls!(Load);
-
-/// A load for every time [s].
-///
-/// Wherever a history is needed, a `Load` (held from t = 0 on), a sequence of (time, load) joined by straight lines, and a function of
-/// time that returns a `Load` do as well.
-///
-/// >>> ramp = LoadHistory.ramp(Load.force(0), Load.force(2), 1.0)
-/// >>> ramp.at(0.25)
-/// Load.force(0.5)
-#[pyclass(frozen, module = "viscocontact")]
-pub struct LoadHistory {
-    pub history: Arc<dyn History>,
-    recipe: Recipe,
-}
-
-impl LoadHistory {
-    fn by(recipe: Recipe, history: impl History + 'static) -> LoadHistory {
-        LoadHistory { history: Arc::new(history), recipe }
-    }
+made! {
+    /// A load for every time [s].
+    ///
+    /// Wherever a history is needed, a `Load` (held from t = 0 on), a sequence of (time, load) joined by straight lines, and a function of
+    /// time that returns a `Load` do as well.
+    ///
+    /// >>> ramp = LoadHistory.ramp(Load.force(0), Load.force(2), 1.0)
+    /// >>> ramp.at(0.25)
+    /// Load.force(0.5)
+    #[pyclass(frozen, module = "viscocontact")]
+    LoadHistory(pub history: Arc<dyn History>) of impl History + 'static => Arc::new
 }
 
 /// Loads at times, from a sequence of (time, load).
@@ -188,20 +178,14 @@ impl LoadHistory {
     }
 }
 
-made_by_calls!(LoadHistory);
-
 fn of_columns(
     times: &Bound<'_, PyAny>,
     name: &str,
     values: &Bound<'_, PyAny>,
     load: fn(f64) -> ld::Load,
 ) -> PyResult<viscocontact::Result<ld::PiecewiseLinear>> {
-    let (times, values) = (column("times", times)?, column(name, values)?);
-    if times.len() != values.len() {
-        let (n, m) = (times.len(), values.len());
-        return Err(PyValueError::new_err(format!("{name}: {m} given, {n} needed, one for each time")));
-    }
-    Ok(ld::PiecewiseLinear::new(&times.into_iter().zip(values.into_iter().map(load)).collect::<Vec<_>>()))
+    let rows = together(["times", name], times, values)?.into_iter().map(|(t, value)| (t, load(value)));
+    Ok(ld::PiecewiseLinear::new(&rows.collect::<Vec<_>>()))
 }
 
 impl LoadHistory {

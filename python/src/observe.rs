@@ -12,10 +12,11 @@ macro_rules! observed {
     ($class:ident) => {
         #[pymethods]
         impl $class {
-            /// The force that moves `shape` along the surface without friction, along x1 and x2 [N].
-            fn lateral_force(slf: Shared<'_, Self>, py: Python<'_>, shape: &Shape) -> PyResult<(f64, f64)> {
+            /// The force that moves `shape` along the surface without friction, along x1 and x2 [N]: the pressure times the slopes of the shape,
+            /// which leave it within a cell of the edge of the contact. Of a steady motion `SlidingReport.lateral_force` is more accurate.
+            fn slope_force(slf: Shared<'_, Self>, py: Python<'_>, shape: &Shape) -> PyResult<(f64, f64)> {
                 let contact = slf.shown()?;
-                Ok(free(py, || contact.lateral_force(&*shape.geometry)).into())
+                Ok(free(py, || contact.slope_force(&*shape.geometry)).into())
             }
 
             /// Normal stiffness over the contact modulus [m].
@@ -29,12 +30,7 @@ macro_rules! observed {
             fn mesh_error<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
                 let contact = slf.shown()?;
                 let Some(error) = free(py, || contact.mesh_error()).or_raise()? else { return Ok(None) };
-                Ok(Some(dict! { py;
-                    "approach": error.approach,
-                    "max_pressure": error.max_pressure,
-                    "pressure_field": error.pressure_field,
-                    "area": error.area,
-                }))
+                Ok(Some(dict! { py; error { approach, max_pressure, pressure_field, area } }))
             }
 
             /// The distribution of the pressure over the grid: the share at zero, the centres of the bins [Pa], and the density [1/Pa].
@@ -90,11 +86,7 @@ macro_rules! observed {
                 about: [f64; 2],
             ) -> PyResult<Option<Bound<'py, PyDict>>> {
                 let Some(of) = slf.shown()?.asymmetry(about).or_raise()? else { return Ok(None) };
-                Ok(Some(dict! { py;
-                    "center_of_pressure": of.center_of_pressure,
-                    "reach": of.reach,
-                    "skewness": of.skewness(),
-                }))
+                Ok(Some(dict! { py; of { center_of_pressure, reach }, "skewness": of.skewness() }))
             }
 
             /// The stress below the surface of the creeping body, or with `in_counter_body` of the other one.
@@ -120,14 +112,8 @@ type Labelled<'py> = (Bound<'py, PyAny>, Vec<Bound<'py, PyDict>>);
 
 fn labelled<'py>(py: Python<'py>, grid: &viscocontact::Grid, patches: ob::Patches) -> PyResult<Labelled<'py>> {
     let of = |patch: &ob::Patch| {
-        Ok(dict! { py;
-            "cells": patch.cells,
-            "area": patch.area,
-            "force": patch.force,
-            "centroid": (patch.centroid[0], patch.centroid[1]),
-            "max_pressure": patch.max_pressure,
-            "winds": (patch.winds[0], patch.winds[1]),
-        })
+        let (centroid, winds): ((f64, f64), (bool, bool)) = (patch.centroid.into(), patch.winds.into());
+        Ok(dict! { py; patch { cells, area, force, max_pressure }, "centroid": centroid, "winds": winds })
     };
     let all = patches.all.iter().map(of).collect::<PyResult<_>>()?;
     Ok((patches.labels.into_pyarray(py).reshape(grid.cells())?.into_any(), all))
@@ -152,6 +138,5 @@ pub fn patches<'py>(
 }
 
 fn distribution<'py>(py: Python<'py>, of: &ob::Distribution) -> PyResult<(f64, Array<'py>, Array<'py>)> {
-    let (centers, bins) = (of.centers().collect::<Vec<_>>(), of.density.len());
-    Ok((of.share_at_zero, to_array(py, centers, &[bins])?, to_array(py, of.density.clone(), &[bins])?))
+    Ok((of.share_at_zero, line(py, of.centers().collect())?, line(py, of.density.clone())?))
 }

@@ -51,7 +51,7 @@ impl Picture {
     ///
     /// >>> import numpy as np
     /// >>> t = np.geomspace(1e-3, 10.0, 50)
-    /// >>> gel = Rheology.prony(1e3, [(4e3, 0.1)])
+    /// >>> gel = Rheology.generalized_maxwell(1e3, [(4e3, 0.1)])
     /// >>> picture = Picture.history(t, {"gel": gel.relaxation_modulus(t)}, "shear modulus", "Pa", scale="log_x")
     #[staticmethod]
     #[pyo3(signature = (times, values, name, unit="", *, title="", scale="linear"))]

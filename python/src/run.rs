@@ -11,22 +11,10 @@ use crate::held::Led;
 use crate::prelude::*;
 
 /// The contact that a run leads.
-#[derive(IntoPyObjectRef)]
+#[derive(FromPyObject, IntoPyObjectRef)]
 pub enum Of {
     Space(Py<ViscoelasticContact>),
     States(Py<StatesContact>),
-}
-
-impl From<Py<ViscoelasticContact>> for Of {
-    fn from(contact: Py<ViscoelasticContact>) -> Of {
-        Of::Space(contact)
-    }
-}
-
-impl From<Py<StatesContact>> for Of {
-    fn from(contact: Py<StatesContact>) -> Of {
-        Of::States(contact)
-    }
 }
 
 /// A contact on its way along a load: an iterator over the reports of its steps, made by `follow`.
@@ -230,9 +218,7 @@ impl Run {
     fn progress<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let at = on_run!(self, py, run => run.progress());
         Ok(dict! { py;
-            "steps": at.steps,
-            "time": at.time,
-            "until": at.until,
+            at { steps, time, until },
             "share_of_time": at.share_of_time(),
             "share_of_decades": at.share_of_decades(),
         })
@@ -252,13 +238,12 @@ impl Run {
         };
         let contact = Shared::try_from(contact.bind(py))?;
         let budget = contact.held.run_ref(self.number)?.error_budget();
+        let mesh = budget.mesh.as_ref();
         Ok(dict! { py;
-            "time": budget.time,
-            "pressure": budget.pressure,
-            "solver": budget.solver,
-            "mesh_approach": budget.mesh.as_ref().map(|mesh| mesh.approach),
-            "mesh_max_pressure": budget.mesh.as_ref().and_then(|mesh| mesh.max_pressure),
-            "mesh_area": budget.mesh.as_ref().map(|mesh| mesh.area),
+            budget { time, pressure, solver },
+            "mesh_approach": mesh.map(|mesh| mesh.approach),
+            "mesh_max_pressure": mesh.and_then(|mesh| mesh.max_pressure),
+            "mesh_area": mesh.map(|mesh| mesh.area),
             "text": budget.to_string(),
         })
     }
@@ -347,11 +332,7 @@ impl Sample {
     #[getter]
     fn field<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
         let Some(of) = self.field else { return Ok(None) };
-        Ok(Some(dict! { py;
-            "error": of.error,
-            "elastic_contacts": of.elastic_contacts,
-            "convolutions": of.convolutions,
-        }))
+        Ok(Some(dict! { py; of { error, elastic_contacts, convolutions } }))
     }
 
     fn __repr__(&self) -> String {

@@ -115,15 +115,6 @@ pub fn memory<'py>(
     material: &Material,
     options: Option<&Bound<'py, PyDict>>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    use crate::errors::OrRaise;
     let memory: vc::contact::Memory = builder(grid, geometry, material, options)?.memory().or_raise()?;
-    Ok(dict! { py;
-        "computed_cells": memory.computed_cells,
-        "grid": memory.grid,
-        "state": memory.state,
-        "history": memory.history,
-        "solver": memory.solver,
-        "kernel": memory.kernel,
-        "total": memory.total(),
-    })
+    Ok(dict! { py; memory { computed_cells, grid, state, history, solver, kernel }, "total": memory.total() })
 }

@@ -6,19 +6,18 @@ use viscocontact as vc;
 use crate::arrays::{cell_values, number};
 use crate::prelude::*;
 
-/// A shape: the gap between the undeformed bodies over the plane of contact, `+inf` where there is nothing to touch.
-///
-/// Its static methods make shapes; `+` superposes them, `shifted` moves them. Lengths are in metres.
-///
-/// >>> ball = Shape.sphere(10e-3)
-/// >>> rough_ball = ball + Shape.wavy(1e-6, 0.2e-3).shifted((0.1e-3, 0))
-/// >>> ball.gap(Grid(2, 2e-3))
-/// array([[2.5e-05, 2.5e-05],
-///        [2.5e-05, 2.5e-05]])
-#[pyclass(frozen, subclass, weakref, module = "viscocontact")]
-pub struct Shape {
-    pub geometry: Arc<dyn Geometry>,
-    recipe: Recipe,
+made! {
+    /// A shape: the gap between the undeformed bodies over the plane of contact, `+inf` where there is nothing to touch.
+    ///
+    /// Its static methods make shapes; `+` superposes them, `shifted` moves them. Lengths are in metres.
+    ///
+    /// >>> ball = Shape.sphere(10e-3)
+    /// >>> rough_ball = ball + Shape.wavy(1e-6, 0.2e-3).shifted((0.1e-3, 0))
+    /// >>> ball.gap(Grid(2, 2e-3))
+    /// array([[2.5e-05, 2.5e-05],
+    ///        [2.5e-05, 2.5e-05]])
+    #[pyclass(frozen, subclass, weakref, module = "viscocontact")]
+    Shape(pub geometry: Arc<dyn Geometry>) of impl Geometry + 'static => Arc::new
 }
 
 impl Shape {
@@ -30,10 +29,6 @@ impl Shape {
         geometry: Arc<dyn Geometry>,
     ) -> PyResult<Shape> {
         Ok(Shape { geometry, recipe: Recipe::new(py, maker, arguments)? })
-    }
-
-    fn by(recipe: Recipe, geometry: impl Geometry + 'static) -> Shape {
-        Shape { geometry: Arc::new(geometry), recipe }
     }
 
     pub fn with_keywords(self, keywords: &Bound<'_, PyDict>) -> PyResult<Shape> {
@@ -133,22 +128,9 @@ impl Shape {
         Shape::made(py, "gap_on", (grid, gap), Arc::new(GapOnCells { grid: on, gap: values }))
     }
 
-    /// This shape with its origin at the point `by` [m].
-    fn shifted(slf: Bound<'_, Self>, by: [f64; 2]) -> PyResult<Shape> {
-        let shape = geo::Shifted::new(Arc::clone(&slf.get().geometry), by).or_raise()?;
-        Shape::made(slf.py(), "shifted", (slf, by), Arc::new(shape))
-    }
-
-    /// The part of this shape within half a `period` [m] of the origin, repeated along x1 and x2; `inf` along an axis without
-    /// repetition.
-    fn repeated(slf: Bound<'_, Self>, period: [f64; 2]) -> PyResult<Shape> {
-        let shape = geo::Repeated::new(Arc::clone(&slf.get().geometry), period).or_raise()?;
-        Shape::made(slf.py(), "repeated", (slf, period), Arc::new(shape))
-    }
-
     fn __add__(slf: Bound<'_, Self>, other: Bound<'_, Shape>) -> PyResult<Shape> {
         let sum = geo::Sum::new(Arc::clone(&slf.get().geometry), Arc::clone(&other.get().geometry));
-        Shape::made(slf.py(), "__add__", (slf, other), Arc::new(sum))
+        Ok(Shape::by(Recipe::new(slf.py(), "__add__", (slf, other))?, sum))
     }
 
     /// Arrays leave `+` to shapes, which refuse it: an array has no grid.
@@ -178,7 +160,14 @@ impl Shape {
     }
 }
 
-made_by_calls!(Shape);
+changes! {Shape, slf:
+    /// This shape with its origin at the point `by` [m].
+    shifted(by: [f64; 2]) = geo::Shifted::new(Arc::clone(&slf.get().geometry), by);
+
+    /// The part of this shape within half a `period` [m] of the origin, repeated along x1 and x2; `inf` along an axis without
+    /// repetition.
+    repeated(period: [f64; 2]) = geo::Repeated::new(Arc::clone(&slf.get().geometry), period);
+}
 
 /// The shapes of the rigid bodies of a contact: a shape, an array of the gap on the grid, or a sequence of shapes.
 pub fn geometries(grid: &vc::Grid, given: &Bound<'_, PyAny>) -> PyResult<Vec<Arc<dyn Geometry>>> {

@@ -29,10 +29,10 @@ impl Shown for SteadySliding {
 }
 
 /// The state of a steady motion, in numbers. `lateral_force` is the integral of the pressure times the slope of the deformed surface, which converges fast
-/// with the cells; `Fields.lateral_force(shape)` takes the slopes of the shape instead, and agrees where cells resolve the contact.
+/// with the cells; `Fields.slope_force(shape)` takes the slopes of the shape instead, and agrees where cells resolve the contact.
 ///
 /// >>> grid = Grid(32, 1e-3)
-/// >>> rubber = Material(Rheology.prony(1e6, [(1e7, 1e-4)]))
+/// >>> rubber = Material(Rheology.generalized_maxwell(1e6, [(1e7, 1e-4)]))
 /// >>> sliding = SteadySliding(grid, Shape.wavy((2e-6, 2e-6), (1e-3, 1e-3)), rubber, kernel=InfluenceKernel.periodic(grid))
 /// >>> report = sliding.at(0.5, Load.force(0.02))
 /// >>> abs(report.dissipation / 0.5 / report.lateral_force[0] - 1) < 1e-9
@@ -44,32 +44,24 @@ pub struct SlidingReport(sl::SlidingReport);
 impl SlidingReport {
     fn __repr__(&self) -> String {
         let of = &self.0;
-        format!(
-            "SlidingReport(velocity={:?} m/s, force={} N, friction={}, contact_area={} m²)",
-            of.velocity,
-            digits(of.force),
-            digits(of.friction()),
-            digits(of.contact_area)
-        )
-    }
-
-    /// The numbers behind the warnings, as those of a step.
-    #[getter]
-    fn figures<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        figures(py, &self.0.figures)
+        let ([v1, v2], numbers) = (of.velocity.map(digits), [of.force, of.friction(), of.contact_area].map(digits));
+        let [force, friction, area] = numbers;
+        format!("SlidingReport(velocity=({v1}, {v2}) m/s, force={force} N, friction={friction}, contact_area={area} m²)")
     }
 }
 
 numbers!(SlidingReport);
 
-getters! {SlidingReport, of:
+getters! {SlidingReport, of, py:
+    /// The numbers behind the warnings, as those of a step.
+    figures: PyResult<Bound<'py, PyDict>> = figures(py, &of.figures);
     /// Velocity of the indenter over the bodies [m/s].
     velocity: (f64, f64) = of.velocity.into();
     /// Normal force [N].
     force: f64 = of.force;
     /// Approach [m].
     approach: f64 = of.approach;
-    /// Force that keeps the indenter moving, along x1 and x2 [N].
+    /// Force along x1 and x2 [N] that moves the body.
     lateral_force: (f64, f64) = of.lateral_force.into();
     /// The coefficient of friction: lateral force against the motion over normal force.
     friction: f64 = of.friction();
@@ -103,7 +95,7 @@ getters! {SlidingReport, of:
 ///     What a counter-body that creeps does.
 ///
 /// >>> grid = Grid(32, 1e-3)
-/// >>> rubber = Material(Rheology.prony(1e6, [(1e7, 1e-4)]))
+/// >>> rubber = Material(Rheology.generalized_maxwell(1e6, [(1e7, 1e-4)]))
 /// >>> road = Shape.wavy((2e-6, 2e-6), (1e-3, 1e-3))
 /// >>> sliding = SteadySliding(grid, road, rubber, kernel=InfluenceKernel.periodic(grid))
 /// >>> sliding.at((0.5, 0.0), Load.force(0.02)).friction > 0
@@ -114,9 +106,7 @@ pub struct SteadySliding {
     cancel: Arc<AtomicBool>,
     /// What the modulus raised.
     kept: Kept,
-    /// What the motion may call, and the objects that show the functions of its parts.
-    modulus: Option<Function>,
-    parts: Py<PyTuple>,
+    recipe: Recipe,
     has_state: bool,
 }
 
@@ -156,13 +146,22 @@ impl SteadySliding {
         };
         let cancel = Arc::<AtomicBool>::default();
         let sliding = kept.raise_or(sliding.or_raise())?.cancelled_by(Arc::clone(&cancel));
-        let parts = (geometry, material, base, options).into_pyobject(py)?.unbind();
-        Ok(SteadySliding { sliding, cancel, kept, modulus, parts, has_state: false })
+        let (keywords, called) = (PyDict::new(py), modulus.iter().cloned().collect::<Vec<_>>());
+        options.map_or(Ok(()), |options| keywords.update(options.as_mapping()))?;
+        keywords.set_item("base", base)?;
+        keywords.set_item("modulus", modulus)?;
+        keywords.set_item("counter_motion", counter_motion)?;
+        let recipe = Recipe::new(py, "", (grid, geometry, material))?.with_keywords(Some(&keywords))?.calling(called);
+        Ok(SteadySliding { sliding, cancel, kept, recipe, has_state: false })
+    }
+
+    /// The motion before its first state.
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        Shared::try_from(slf)?.recipe.reduce(slf.get_type())
     }
 
     fn __traverse__(&self, visit: PyVisit<'_>) -> Traversed {
-        visit.call(&self.parts)?;
-        self.modulus.iter().try_for_each(|function| visit.call(&*function.0))
+        self.recipe.traverse(&visit)
     }
 
     /// The state under a load, a force or an approach, of the indenter that moves with `velocity` [m/s]: along x1, or a pair along x1 and
@@ -259,13 +258,15 @@ const COLUMNS: [Column; 11] = [
 /// The states of a sweep.
 ///
 /// >>> grid = Grid(32, 1e-3)
-/// >>> rubber = Material(Rheology.prony(1e6, [(1e7, 1e-4)]))
+/// >>> rubber = Material(Rheology.generalized_maxwell(1e6, [(1e7, 1e-4)]))
 /// >>> sliding = SteadySliding(grid, Shape.wavy((2e-6, 2e-6), (1e-3, 1e-3)), rubber, kernel=InfluenceKernel.periodic(grid))
 /// >>> table = sliding.sweep([0.1, 1.0], Load.force(0.02))
 /// >>> len(table), table.columns()["velocity1"]
 /// (2, array([0.1, 1. ]))
 #[pyclass(frozen, module = "viscocontact")]
 pub struct SlidingTable(sl::SlidingTable);
+
+numbers!(SlidingTable);
 
 #[pymethods]
 impl SlidingTable {

@@ -143,19 +143,13 @@ impl ElasticStates {
         let [shape] = &geometries(&grid.get().0, &geometry)?[..] else {
             return Err(PyTypeError::new_err("geometry: a sweep is of one shape"));
         };
-        let mut sweep = st::Sweep::new(grid.get().0.clone(), shape).accuracy(accuracy).tilt(tilts(at, tilt)?);
-        if let Some(kernel) = &kernel {
-            sweep = sweep.kernel(Arc::clone(&kernel.get().kernel));
-        }
-        if keep_pressures {
-            sweep = sweep.keep_pressures();
-        }
-        if let Some(max_states) = max_states {
-            sweep = sweep.max_states(max_states.0);
-        }
-        if let Some(given) = &settings {
-            sweep = sweep.settings(self::settings(Settings::default().with_tolerance(1e-8), given)?);
-        }
+        let sweep = st::Sweep::new(grid.get().0.clone(), shape).accuracy(accuracy).tilt(tilts(at, tilt)?);
+        let sweep = if_given(sweep, kernel, |sweep, kernel| sweep.kernel(Arc::clone(&kernel.get().kernel)));
+        let sweep = if_given(sweep, keep_pressures.then_some(()), |sweep, ()| sweep.keep_pressures());
+        let sweep = if_given(sweep, max_states, |sweep, most| sweep.max_states(most.0));
+        let base = Settings::default().with_tolerance(1e-8);
+        let settings = settings.map(|given| self::settings(base, &given)).transpose()?;
+        let sweep = if_given(sweep, settings, st::Sweep::settings);
         let mut listener = Listener::new(progress);
         let states = free(py, || sweep.run_with(reach, |states| listener.goes_on((states.len(),))));
         let states = listener.result(states.or_raise())?;
@@ -235,7 +229,7 @@ impl ElasticStates {
         let (history, times) = (history(load)?, column("times", times)?);
         let until = *times.last().ok_or_else(|| PyTypeError::new_err("times: at least one is needed"))?;
         if !times.is_sorted_by(|one, next| one < next) {
-            return Err(pyo3::exceptions::PyValueError::new_err("times: they must ascend, each once"));
+            return Err(PyValueError::new_err("times: they must ascend, each once"));
         }
         let mut values = Vec::with_capacity(3 * materials.len() * times.len());
         for material in &materials {
@@ -250,10 +244,7 @@ impl ElasticStates {
                 Ok(rows)
             });
             let rows = rows.or_raise()?;
-            if rows.len() != times.len() {
-                let text = format!("times: they must lie after 0: {} of {} were passed", rows.len(), times.len());
-                return Err(pyo3::exceptions::PyValueError::new_err(text));
-            }
+            one_for_each("of the times, which must lie after 0", "states", rows.len(), times.len())?;
             values.extend(rows.iter().flat_map(|row| &row[1..]));
             py.check_signals()?;
         }

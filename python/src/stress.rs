@@ -121,12 +121,7 @@ impl SubsurfaceStress {
     fn greatest<'py>(&self, py: Python<'py>, depths: Vec<f64>, quantity: &str) -> PyResult<Bound<'py, PyDict>> {
         let quantity = choice("quantity", quantity, &QUANTITIES)?;
         let peak = free(py, || self.0.greatest(&depths, quantity)).or_raise()?;
-        Ok(dict! { py;
-            "value": peak.value,
-            "position": peak.position,
-            "components": peak.stress.components().to_vec(),
-            "at_end_of_depths": peak.at_end_of_depths,
-        })
+        Ok(dict! { py; peak { value, position, at_end_of_depths }, "components": peak.stress.components().to_vec() })
     }
 
     /// Writes the stress at `depths` [m] below a `contact` of this grid: `format` "npz" (`numpy.load`) or "vtk" (name it `.vtr`: ParaView,
@@ -211,13 +206,7 @@ impl StressHistory {
 pub struct EnergyBalance(ct::EnergyBalance);
 
 fn energies<'py>(py: Python<'py>, of: ct::Energies) -> PyResult<Bound<'py, PyDict>> {
-    Ok(dict! { py;
-        "work": of.work,
-        "stored": of.stored,
-        "viscous": of.viscous,
-        "lost": of.lost,
-        "imbalance": of.imbalance(),
-    })
+    Ok(dict! { py; of { work, stored, viscous, lost }, "imbalance": of.imbalance() })
 }
 
 #[pymethods]
@@ -229,12 +218,8 @@ impl EnergyBalance {
 
     fn __repr__(slf: Shared<'_, Self>) -> String {
         let of = slf.0.energies();
-        format!(
-            "EnergyBalance(work={} J, stored={} J, viscous={} J)",
-            digits(of.work),
-            digits(of.stored),
-            digits(of.viscous)
-        )
+        let [work, stored, viscous] = [of.work, of.stored, of.viscous].map(digits);
+        format!("EnergyBalance(work={work} J, stored={stored} J, viscous={viscous} J)")
     }
 
     /// Takes in the last step, of which this is the report, and returns `energies`.

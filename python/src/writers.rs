@@ -31,7 +31,8 @@ macro_rules! with_either {
     };
 }
 
-/// A run as a CSV file with a row for each step; its first line is the scene as JSON.
+/// A run as a CSV file with a row for each step, below the names of the columns with their units. The scene is beside it as JSON, in a file with `.json`
+/// after the name.
 ///
 /// Parameters
 /// ----------
@@ -44,7 +45,7 @@ macro_rules! with_either {
 /// earlier : "refuse" (default: FileExistsError), "replace", or "continue"
 ///     "continue" goes on after the state of the contact, as after `resume`: what the file has of later times is removed.
 ///
-/// `to_dataframe()` reads it back; elsewhere `pandas.read_csv(path, comment="#")`.
+/// `to_dataframe()` reads it back, and `pandas.read_csv(path)` elsewhere.
 ///
 /// >>> import pathlib, tempfile
 /// >>> path = pathlib.Path(tempfile.mkdtemp(), "history.csv")
@@ -52,8 +53,8 @@ macro_rules! with_either {
 /// >>> history = CsvHistory(path, contact)
 /// >>> for report in contact.follow(Load.force(0.5), 0.2, dt=0.1):
 /// ...     history.record(contact, report)
-/// >>> len(path.read_text().splitlines())      # the scene, the names, and a row for each step
-/// 5
+/// >>> len(path.read_text().splitlines())      # the names, and a row for each step
+/// 4
 #[pyclass(module = "viscocontact")]
 pub struct CsvHistory {
     history: vo::CsvHistory,
