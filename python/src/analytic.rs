@@ -7,15 +7,46 @@ use crate::arrays::check;
 use crate::prelude::*;
 use crate::sliding::complex;
 
-/// Hertz: a sphere of `radius` [m] on a body of contact `modulus` E* [Pa] under `force` [N]: "contact_radius" [m], "max_pressure" [Pa]
-/// and "approach" [m].
-///
-/// >>> round(hertz(10e-3, 4e6, 1.0)["contact_radius"], 6)
-/// 0.001233
-#[pyfunction]
-pub fn hertz<'py>(py: Python<'py>, radius: f64, modulus: f64, force: f64) -> PyResult<Bound<'py, PyDict>> {
-    let of = an::Hertz::new(radius, modulus, force).or_raise()?;
-    Ok(dict! { py; of { contact_radius, max_pressure, approach } })
+/// Closed forms as dicts: a function of each, of what `new` of the crate takes, and the fields that it gives.
+macro_rules! forms {
+    ($($(#[$meta:meta])* $name:ident($($given:ident: $type:ty),*) = $form:ident { $($field:ident),* };)*) => {$(
+        #[pyfunction]
+        $(#[$meta])*
+        pub fn $name<'py>(py: Python<'py>, $($given: $type),*) -> PyResult<Bound<'py, PyDict>> {
+            let of = an::$form::new($($given),*).or_raise()?;
+            Ok(dict! { py; of { $($field),* } })
+        }
+    )*};
+}
+
+forms! {
+    /// Hertz: a sphere of `radius` [m] on a body of contact `modulus` E* [Pa] under `force` [N]: "contact_radius" [m], "max_pressure" [Pa]
+    /// and "approach" [m].
+    ///
+    /// >>> round(hertz(10e-3, 4e6, 1.0)["contact_radius"], 6)
+    /// 0.001233
+    hertz(radius: f64, modulus: f64, force: f64) = Hertz { contact_radius, max_pressure, approach };
+
+    /// Hertz: a paraboloid of `radii` of curvature along x1 and x2 [m]: "semi_axes" of the contact [m], "max_pressure" [Pa] and "approach" [m].
+    ///
+    /// >>> round(hertz_ellipse((10e-3, 10e-3), 4e6, 1.0)["semi_axes"][0], 6)     # as hertz
+    /// 0.001233
+    hertz_ellipse(radii: [f64; 2], modulus: f64, force: f64) = HertzEllipse { semi_axes, max_pressure, approach };
+
+    /// A rigid flat circular punch of `radius` [m] under `force` [N] at the point (`eccentricity`, 0) [m]: "approach" [m] and "tilt" [rad].
+    ///
+    /// >>> rigid_punch(1e-3, 1e6, 1.0)["approach"]
+    /// 0.0005
+    #[pyo3(signature = (radius, modulus, force, eccentricity=0.0))]
+    rigid_punch(radius: f64, modulus: f64, force: f64, eccentricity: f64) = RigidPunch { approach, tilt };
+
+    /// Hunter: a cylinder of `radius` [m] that rolls or slides on a body of one retardation time under `force` on a unit of its length [N/m]:
+    /// "half_width" and "center" of the contact [m], and "friction". `compliances` are C₀ at once and C₁ delayed [1/Pa], `reach` the velocity
+    /// times the retardation time [m].
+    ///
+    /// >>> 0 < rolling_cylinder(10e-3, (1e-7, 1e-7), 100.0, 1e-3)["friction"] < 0.1
+    /// True
+    rolling_cylinder(radius: f64, compliances: [f64; 2], force: f64, reach: f64) = RollingCylinder { half_width, center, friction };
 }
 
 /// A sphere on a viscoelastic half-space under a force for which the contact never shrinks (Lee and Radok).
@@ -60,51 +91,6 @@ impl GrowingSphere {
 }
 
 made_by_calls!(GrowingSphere);
-
-/// Hertz: a paraboloid of `radii` of curvature along x1 and x2 [m]: "semi_axes" of the contact [m], "max_pressure" [Pa] and "approach" [m].
-///
-/// >>> round(hertz_ellipse((10e-3, 10e-3), 4e6, 1.0)["semi_axes"][0], 6)     # as hertz
-/// 0.001233
-#[pyfunction]
-pub fn hertz_ellipse<'py>(py: Python<'py>, radii: [f64; 2], modulus: f64, force: f64) -> PyResult<Bound<'py, PyDict>> {
-    let of = an::HertzEllipse::new(radii, modulus, force).or_raise()?;
-    Ok(dict! { py; of { semi_axes, max_pressure, approach } })
-}
-
-/// A rigid flat circular punch of `radius` [m] under `force` [N] at the point (`eccentricity`, 0) [m]: "approach" [m] and "tilt" [rad].
-///
-/// >>> rigid_punch(1e-3, 1e6, 1.0)["approach"]
-/// 0.0005
-#[pyfunction]
-#[pyo3(signature = (radius, modulus, force, eccentricity=0.0))]
-pub fn rigid_punch<'py>(
-    py: Python<'py>,
-    radius: f64,
-    modulus: f64,
-    force: f64,
-    eccentricity: f64,
-) -> PyResult<Bound<'py, PyDict>> {
-    let of = an::RigidPunch::new(radius, modulus, force, eccentricity).or_raise()?;
-    Ok(dict! { py; of { approach, tilt } })
-}
-
-/// Hunter: a cylinder of `radius` [m] that rolls or slides on a body of one retardation time under `force` on a unit of its length [N/m]:
-/// "half_width" and "center" of the contact [m], and "friction". `compliances` are C₀ at once and C₁ delayed [1/Pa], `reach` the velocity
-/// times the retardation time [m].
-///
-/// >>> 0 < rolling_cylinder(10e-3, (1e-7, 1e-7), 100.0, 1e-3)["friction"] < 0.1
-/// True
-#[pyfunction]
-pub fn rolling_cylinder<'py>(
-    py: Python<'py>,
-    radius: f64,
-    compliances: [f64; 2],
-    force: f64,
-    reach: f64,
-) -> PyResult<Bound<'py, PyDict>> {
-    let of = an::RollingCylinder::new(radius, compliances, force, reach).or_raise()?;
-    Ok(dict! { py; of { half_width, center, friction } })
-}
 
 /// Closed forms of bodies that stick: a class of each, its getters, and its functions of a number.
 macro_rules! sticking {

@@ -142,7 +142,8 @@ impl InfluenceKernel {
         let pressure = field("pressure", pressure, cells)?;
         let kernel = &self.kernel;
         let convolve = |values: &mut [f64]| {
-            free(py, || kernel.workspace().and_then(|mut work| kernel.convolve(&pressure, values, &mut work))).or_raise()
+            free(py, || kernel.workspace().and_then(|mut work| kernel.convolve(&pressure, values, &mut work)))
+                .or_raise()
         };
         let Some(out) = out else {
             let mut values = vec![0.0; pressure.len()];

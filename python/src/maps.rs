@@ -2,8 +2,8 @@
 
 use std::fs::File;
 
-use viscocontact::geometry::{self as geo, Anisotropy, Form, LengthUnit, RoughSpec, Roughness};
 use viscocontact::TextFormat;
+use viscocontact::geometry::{self as geo, Anisotropy, Form, LengthUnit, RoughSpec, Roughness};
 
 use crate::arrays::{plane, table};
 use crate::errors::unreadable;

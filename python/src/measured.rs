@@ -41,11 +41,9 @@ impl Measurements {
         reading: Option<Bound<'py, PyDict>>,
     ) -> PyResult<Measurements> {
         let py = text.py();
-        let (kind, of_file) = (choice("experiment", experiment, &EXPERIMENTS)?, of_units(units.as_ref())?);
-        let table = text_table(&path, Some(text.as_bytes()), reading.as_ref())?;
+        let kind = choice("experiment", experiment, &EXPERIMENTS)?;
+        let (table, of_file, keywords) = again(&path, &text, units, reading)?;
         let measurements = free(py, || rh::Measurements::from_table(kind, &table, of_file)).or_raise()?;
-        let keywords = dict! { py; "units": units };
-        reading.map_or(Ok(()), |reading| keywords.update(reading.as_mapping()))?;
         let recipe = Recipe::new(py, "_of_bytes", (experiment, text))?.with_keywords(Some(&keywords))?;
         Ok(Measurements::by(recipe, measurements))
     }
@@ -143,6 +141,19 @@ changes! {Measurements, slf:
 
 fn series_of(recipe: Recipe, series: rh::CreepSeries, extrapolated: bool) -> Rheology {
     Rheology::by(recipe, if extrapolated { series.extrapolated() } else { series })
+}
+
+/// The table of a text, its units, and the keywords that read it again.
+fn again<'py>(
+    path: &Path,
+    text: &Bound<'py, PyBytes>,
+    units: Option<Bound<'py, PyAny>>,
+    reading: Option<Bound<'py, PyDict>>,
+) -> PyResult<(TextTable, Units, Bound<'py, PyDict>)> {
+    let table = text_table(path, Some(text.as_bytes()), reading.as_ref())?;
+    let (of_file, keywords) = (of_units(units.as_ref())?, dict! { text.py(); "units": units });
+    reading.map_or(Ok(()), |reading| keywords.update(reading.as_mapping()))?;
+    Ok((table, of_file, keywords))
 }
 
 /// A text file, read as keywords say: `decimal_comma`, `delimiter`, `skipped_lines`, `headings` by column, and `only` some of them.
@@ -356,12 +367,11 @@ impl MasterCurve {
         reading: Option<Bound<'py, PyDict>>,
     ) -> PyResult<MasterCurve> {
         let py = text.py();
-        let (kind, of_file) = (choice("experiment", experiment, &EXPERIMENTS)?, of_units(units.as_ref())?);
-        let table = text_table(&path, Some(text.as_bytes()), reading.as_ref())?;
+        let kind = choice("experiment", experiment, &EXPERIMENTS)?;
+        let (table, of_file, keywords) = again(&path, &text, units, reading)?;
         let isotherms = || rh::Isotherm::from_table(kind, &table, of_file);
         let curve = free(py, || shifted(reference, isotherms()?, vertical_shifts)).or_raise()?;
-        let keywords = dict! { py; "units": units, "vertical_shifts": vertical_shifts };
-        reading.map_or(Ok(()), |reading| keywords.update(reading.as_mapping()))?;
+        keywords.set_item("vertical_shifts", vertical_shifts)?;
         let recipe = Recipe::new(py, "_of_bytes", (experiment, text, reference))?.with_keywords(Some(&keywords))?;
         Ok(MasterCurve::by(recipe, curve))
     }
@@ -377,7 +387,8 @@ impl MasterCurve {
             return Ok(made);
         }
         let row = |(temperature, _)| Ok((temperature, law.vertical_factor(temperature)?));
-        let rows = self.curve.shift_factors().into_iter().map(row).collect::<viscocontact::Result<Vec<_>>>().or_raise()?;
+        let rows =
+            self.curve.shift_factors().into_iter().map(row).collect::<viscocontact::Result<Vec<_>>>().or_raise()?;
         TimeTemperature::with_vertical_factors(Bound::new(py, made)?, Value(rows.into_pyobject(py)?))
     }
 }

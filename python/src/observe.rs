@@ -34,20 +34,12 @@ macro_rules! observed {
             }
 
             /// The distribution of the pressure over the grid: the share at zero, the centres of the bins [Pa], and the density [1/Pa].
-            fn pressure_distribution<'py>(
-                slf: Shared<'_, Self>,
-                py: Python<'py>,
-                bins: Count,
-            ) -> PyResult<(f64, Array<'py>, Array<'py>)> {
+            fn pressure_distribution<'py>(slf: Shared<'_, Self>, py: Python<'py>, bins: Count) -> PyResult<Bins<'py>> {
                 distribution(py, &slf.shown()?.pressure_distribution(bins.0).or_raise()?)
             }
 
             /// The distribution of the gap where it is finite: the share at zero, the centres of the bins [m], and the density [1/m].
-            fn gap_distribution<'py>(
-                slf: Shared<'_, Self>,
-                py: Python<'py>,
-                bins: Count,
-            ) -> PyResult<(f64, Array<'py>, Array<'py>)> {
+            fn gap_distribution<'py>(slf: Shared<'_, Self>, py: Python<'py>, bins: Count) -> PyResult<Bins<'py>> {
                 distribution(py, &slf.shown()?.gap_distribution(bins.0).or_raise()?)
             }
 
@@ -137,6 +129,9 @@ pub fn patches<'py>(
     labelled(py, &grid.0, free(py, || ob::Patches::new(&grid.0, &pressure, periodic)).or_raise()?)
 }
 
-fn distribution<'py>(py: Python<'py>, of: &ob::Distribution) -> PyResult<(f64, Array<'py>, Array<'py>)> {
+/// The share at zero, and the centres and densities of bins.
+type Bins<'py> = (f64, Array<'py>, Array<'py>);
+
+fn distribution<'py>(py: Python<'py>, of: &ob::Distribution) -> PyResult<Bins<'py>> {
     Ok((of.share_at_zero, line(py, of.centers().collect())?, line(py, of.density.clone())?))
 }

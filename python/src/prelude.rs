@@ -10,7 +10,9 @@ pub use pyo3::gc::PyVisit;
 pub use pyo3::prelude::*;
 pub use pyo3::types::{PyBytes, PyDict, PyTuple};
 
-pub use crate::arrays::{ALL, Array, FROM_ZERO, column, if_given, line, mapped, never, one_for_each, rows_of, to_array, together};
+pub use crate::arrays::{
+    ALL, Array, FROM_ZERO, column, if_given, line, mapped, never, one_for_each, rows_of, to_array, together,
+};
 pub use crate::contact::ViscoelasticContact;
 pub use crate::elastic::ElasticContact;
 pub use crate::errors::{Kept, OrRaise, choice, in_python, no_violation, nothing_raised, raised_number, sure};

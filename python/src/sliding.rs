@@ -46,7 +46,9 @@ impl SlidingReport {
         let of = &self.0;
         let ([v1, v2], numbers) = (of.velocity.map(digits), [of.force, of.friction(), of.contact_area].map(digits));
         let [force, friction, area] = numbers;
-        format!("SlidingReport(velocity=({v1}, {v2}) m/s, force={force} N, friction={friction}, contact_area={area} m²)")
+        format!(
+            "SlidingReport(velocity=({v1}, {v2}) m/s, force={force} N, friction={friction}, contact_area={area} m²)"
+        )
     }
 }
 
@@ -293,6 +295,10 @@ impl SlidingTable {
     /// Writes the table as a CSV file.
     fn write_csv(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         free(py, || self.0.write_csv(path)).or_raise()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("SlidingTable({} states)", self.__len__())
     }
 
     fn __len__(&self) -> usize {

@@ -74,7 +74,8 @@ impl StatesContact {
         sheared_by: Option<Bound<'_, PyAny>>,
     ) -> PyResult<StatesContact> {
         let mut contact = st::StatesContact::new(&states.get().states, &material.get().material).or_raise()?;
-        contact = if_given(contact, temperature.as_ref(), |contact, of| contact.with_temperature(of.get().history.clone()));
+        contact =
+            if_given(contact, temperature.as_ref(), |contact, of| contact.with_temperature(of.get().history.clone()));
         contact = if_given(contact, linear_steps.then_some(()), |contact, ()| contact.with_linear_steps());
         if let Some(error) = merge_error {
             contact = contact.with_merge_error(error).or_raise()?;

@@ -112,7 +112,8 @@ impl TemperatureHistory {
         } else {
             rh::TemperatureHistory::table(given, &pairs("temperature", &temperature)?)
         };
-        let recipe = Recipe::new(py, "", (law, temperature, corners))?.calling(function.into_iter().collect::<Vec<_>>());
+        let recipe =
+            Recipe::new(py, "", (law, temperature, corners))?.calling(function.into_iter().collect::<Vec<_>>());
         Ok(TemperatureHistory::by(recipe, history.or_raise()?))
     }
 

@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use viscocontact::geometry::{Cone, Ellipsoid, Geometry, Shifted, Sphere, Sum, Wavy};
 use viscocontact::prelude::*;
+use viscocontact::rheology::PronyTerm;
 
 /// Times over which bodies without an exact series are fitted [s].
 const FITTED: RangeInclusive<f64> = 1e-4..=1e2;

@@ -196,9 +196,9 @@ def test_several_bodies_along_histories():
     contact = vc.ViscoelasticContact(grid, shapes, rubber)
     table = contact.follow(histories, 5.0, tolerance=1e-2, stop_at=[2.0]).table()
     assert 2.0 in table["time"] and contact.bodies[1].force == pytest.approx(0.5) and contact.bodies[0].approach == pytest.approx(20e-6)
-    with pytest.raises(ValueError, match="1 histories given, 2 needed"):
+    with pytest.raises(ValueError, match="load: 1 given, 2 needed, one for each body"):
         contact.follow(vc.Load.force(1.0), 6.0)
-    with pytest.raises(ValueError, match="2 histories given, 1 needed"):
+    with pytest.raises(ValueError, match="load: 2 given, 1 needed, one for each body"):
         on_ball().follow([vc.Load.force(1.0), vc.Load.force(1.0)], 6.0)
     for wrong in ([], [vc.Load.force(1.0), 3.0], [(0.0, vc.Load.force(1.0)), (1.0, 2.0)]):
         with pytest.raises((TypeError, ValueError), match="load|table"):

@@ -73,8 +73,7 @@ fn the_work_of_the_loads_is_the_work_at_the_surface() {
             |contact: &ViscoelasticContact| (contact.pressure().to_vec(), contact.fields().displacement().to_vec());
         for _ in 0..steps {
             let (p, u) = state(&contact);
-            let before =
-                (contact.fields().slope_force(&travel.shape_at(contact.time()).unwrap()), contact.approach());
+            let before = (contact.fields().slope_force(&travel.shape_at(contact.time()).unwrap()), contact.approach());
             let from = travel.position(contact.time()).unwrap();
             let report = contact.step_along(&travel, dt, load).unwrap();
             let (q, w) = state(&contact);
