@@ -15,7 +15,7 @@ macro_rules! forms {
     ($($(#[$meta:meta])* $name:ident($($given:ident: $type:ty),*) = $form:ident { $($field:ident),* };)*) => {$(
         #[pyfunction]
         $(#[$meta])*
-        pub fn $name<'py>(py: Python<'py>, $($given: $type),*) -> PyResult<Bound<'py, PyDict>> {
+        pub fn $name<'py>(py: Python<'py>, $($given: $type),*) -> PyResult<Dict<'py>> {
             let of = an::$form::new($($given),*).or_raise()?;
             Ok(dict! { py; of { $($field),* } })
         }
@@ -67,7 +67,7 @@ pub struct GrowingSphere {
 #[pymethods]
 impl GrowingSphere {
     #[new]
-    fn new(radius: f64, material: Bound<'_, Material>, load: &Bound<'_, PyAny>) -> PyResult<GrowingSphere> {
+    fn new(radius: f64, material: Bound<'_, Material>, load: &Object<'_>) -> PyResult<GrowingSphere> {
         let (py, given) = (load.py(), LoadHistory::any(load)?);
         let load = Arc::clone(&given.get().history);
         let sphere = an::GrowingSphere::new(radius, &material.get().material, Arc::clone(&load));
@@ -77,17 +77,17 @@ impl GrowingSphere {
     }
 
     /// Contact radius [m] at times [s].
-    fn contact_radius<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    fn contact_radius<'py>(&self, t: &Object<'py>) -> PyResult<Object<'py>> {
         mapped("t", t, FROM_ZERO, |t| self.sphere.contact_radius(t), || self.load.failure())
     }
 
     /// Approach [m] at times [s].
-    fn approach<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    fn approach<'py>(&self, t: &Object<'py>) -> PyResult<Object<'py>> {
         mapped("t", t, FROM_ZERO, |t| self.sphere.approach(t), || self.load.failure())
     }
 
     /// Pressure [Pa] at distances from the centre [m] and one time [s].
-    fn pressure<'py>(&self, r: &Bound<'py, PyAny>, t: f64) -> PyResult<Bound<'py, PyAny>> {
+    fn pressure<'py>(&self, r: &Object<'py>, t: f64) -> PyResult<Object<'py>> {
         check("t", t, FROM_ZERO)?;
         mapped("r", r, FROM_ZERO, |r| self.sphere.pressure(r, t), || self.load.failure())
     }
@@ -285,7 +285,7 @@ impl OpeningEdge {
     /// A sphere of `radius` [m] drawn back from an `approach` [m] at a `speed` [m/s], at the maximum pull: a dict of "force" [N], "approach" and
     /// "contact_radius" [m], "edge_speed" [m/s], "work" [J/m²] and "lag", V τ/(R^⅓ (w/E*)^⅔) with the longest relaxation time: beyond the range of the
     /// theory, where it exceeds 0.1, the force is too large, and a UserWarning says so.
-    fn pull_off<'py>(&self, py: Python<'py>, radius: f64, approach: f64, speed: f64) -> PyResult<Bound<'py, PyDict>> {
+    fn pull_off<'py>(&self, py: Python<'py>, radius: f64, approach: f64, speed: f64) -> PyResult<Dict<'py>> {
         let of = free(py, || self.edge.pull_off(radius, approach, speed)).or_raise()?;
         if of.lag > MOST_LAG {
             let lag = of.lag;
@@ -332,9 +332,9 @@ pub fn persson_friction<'py>(
     surface: &Shape,
     modulus: Function,
     pressure: f64,
-    velocity: &Bound<'py, PyAny>,
+    velocity: &Object<'py>,
     gamma: f64,
-) -> PyResult<Bound<'py, PyDict>> {
+) -> PyResult<Dict<'py>> {
     let velocity = crate::sliding::velocity(velocity)?;
     let surface = Arc::clone(&surface.geometry);
     let kept = Kept::default();

@@ -89,12 +89,12 @@ impl Attraction {
     }
 
     /// Traction [Pa] at gaps [m].
-    fn traction<'py>(&self, gap: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    fn traction<'py>(&self, gap: &Object<'py>) -> PyResult<Object<'py>> {
         mapped("gap", gap, FROM_ZERO, |gap| self.law.traction(gap), || self.law.failure())
     }
 
     /// Energy [J/m²] that opens the gap [m] to infinity.
-    fn energy<'py>(&self, gap: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    fn energy<'py>(&self, gap: &Object<'py>) -> PyResult<Object<'py>> {
         mapped("gap", gap, FROM_ZERO, |gap| self.law.energy(gap), || self.law.failure())
     }
 

@@ -114,9 +114,9 @@ impl ViscoelasticContact {
     fn new(
         py: Python<'_>,
         grid: Bound<'_, Grid>,
-        geometry: Bound<'_, PyAny>,
+        geometry: Object<'_>,
         material: Bound<'_, Material>,
-        options: Option<&Bound<'_, PyDict>>,
+        options: Option<&Dict<'_>>,
     ) -> PyResult<ViscoelasticContact> {
         let builder = builder(grid.get(), &geometry, material.get(), options)?;
         let contact = free(py, || builder.build()).or_raise()?;
@@ -137,7 +137,7 @@ impl ViscoelasticContact {
     /// ValueError: ...
     /// >>> contact.time, contact.force
     /// (0.0, 0.0)
-    fn step(mut slf: Taken<'_, Self>, py: Python<'_>, dt: f64, load: &Bound<'_, PyAny>) -> PyResult<StepReport> {
+    fn step(mut slf: Taken<'_, Self>, py: Python<'_>, dt: f64, load: &Object<'_>) -> PyResult<StepReport> {
         let loads = loads(load)?;
         slf.compute(py, |contact, cancel| contact.step_unless(cancel, dt, &loads)).map(StepReport)
     }
@@ -148,7 +148,7 @@ impl ViscoelasticContact {
         py: Python<'_>,
         cells: [isize; 2],
         dt: f64,
-        load: &Bound<'_, PyAny>,
+        load: &Object<'_>,
     ) -> PyResult<StepReport> {
         let loads = loads(load)?;
         slf.compute(py, |contact, _| contact.step_over(cells, dt, &loads)).map(StepReport)
@@ -163,11 +163,11 @@ impl ViscoelasticContact {
         mut slf: Taken<'_, Self>,
         py: Python<'py>,
         shape: &Shape,
-        position: Bound<'py, PyAny>,
+        position: Object<'py>,
         dt: f64,
         load: &Load,
         track: Option<&Shape>,
-    ) -> PyResult<(StepReport, Bound<'py, PyDict>)> {
+    ) -> PyResult<(StepReport, Dict<'py>)> {
         let shape = Arc::clone(&shape.geometry);
         let mut travel = if position.is_callable() {
             let function: Function = position.extract()?;
@@ -185,7 +185,7 @@ impl ViscoelasticContact {
     }
 
     /// Replaces the shapes between two steps, moved or changed: a shape, an array of gaps, or a sequence with one for each body.
-    fn set_geometry(mut slf: Taken<'_, Self>, py: Python<'_>, geometry: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn set_geometry(mut slf: Taken<'_, Self>, py: Python<'_>, geometry: &Object<'_>) -> PyResult<()> {
         let contact = slf.held.free()?;
         let shapes = geometries(contact.grid(), geometry)?;
         let shapes: Vec<&dyn vc::geometry::Geometry> = shapes.iter().map(|shape| &**shape as _).collect();

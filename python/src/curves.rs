@@ -52,8 +52,8 @@ impl Experiment {
     #[new]
     #[pyo3(signature = (times, drive, tip, *, stiffness=None))]
     fn new(
-        times: &Bound<'_, PyAny>,
-        drive: &Bound<'_, PyAny>,
+        times: &Object<'_>,
+        drive: &Object<'_>,
         tip: &Bound<'_, ElasticStates>,
         stiffness: Option<f64>,
     ) -> PyResult<Experiment> {
@@ -71,13 +71,13 @@ impl Experiment {
 
     /// The times [s].
     #[getter]
-    fn times<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
+    fn times<'py>(&self, py: Python<'py>) -> Object<'py> {
         self.of.protocol().times().to_vec().into_pyarray(py).into_any()
     }
 
     /// The drive [m].
     #[getter]
-    fn drive<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
+    fn drive<'py>(&self, py: Python<'py>) -> Object<'py> {
         self.of.protocol().drive().to_vec().into_pyarray(py).into_any()
     }
 
@@ -148,7 +148,7 @@ calls!(Curve);
 #[pymethods]
 impl Curve {
     #[new]
-    fn new(experiment: &Experiment, force: &Bound<'_, PyAny>) -> PyResult<Curve> {
+    fn new(experiment: &Experiment, force: &Object<'_>) -> PyResult<Curve> {
         let of = id::Curve::new(experiment.of.clone(), column("force", force)?).or_raise()?;
         Ok(Curve { of, tip: experiment.tip.clone_ref(force.py()) })
     }
@@ -193,7 +193,7 @@ impl Curve {
     /// >>> read = Curve(experiment, force).oliver_pharr(0.0, lambda h: 6.2832 * 10e-6 * h)
     /// >>> abs(read["modulus"] / 1e9 - 1) < 0.02
     /// True
-    fn oliver_pharr<'py>(&self, py: Python<'py>, contact_point: f64, area: Function) -> PyResult<Bound<'py, PyDict>> {
+    fn oliver_pharr<'py>(&self, py: Python<'py>, contact_point: f64, area: Function) -> PyResult<Dict<'py>> {
         let area = |h: f64| raised_number(area.call((h,)), f64::NAN);
         let of = free(py, || id::usual::oliver_pharr(&self.of, contact_point, area)).or_raise()?;
         Ok(dict! { py; of { stiffness, contact_depth, area, modulus } })
@@ -218,7 +218,7 @@ impl Curve {
 
     /// The elastic modulus of the approach: "modulus" [Pa], "offset" [N], "contact_point" [m].
     #[pyo3(signature = (contact_point=None))]
-    fn loading_modulus<'py>(&self, py: Python<'py>, contact_point: Option<f64>) -> PyResult<Bound<'py, PyDict>> {
+    fn loading_modulus<'py>(&self, py: Python<'py>, contact_point: Option<f64>) -> PyResult<Dict<'py>> {
         let of = free(py, || id::usual::loading_modulus(&self.of, contact_point)).or_raise()?;
         Ok(dict! { py; of { modulus, offset, contact_point } })
     }
@@ -226,12 +226,7 @@ impl Curve {
     /// The relaxation of a hold as E∞ + E₁ exp(−t/τ), with the `correction` of its ramp ("step", "half_ramp" or "factor"): "equilibrium",
     /// "relaxing" and their sum "glassy" [Pa], "time" [s].
     #[pyo3(signature = (contact_point=0.0, correction="factor"))]
-    fn hold_relaxation<'py>(
-        &self,
-        py: Python<'py>,
-        contact_point: f64,
-        correction: &str,
-    ) -> PyResult<Bound<'py, PyDict>> {
+    fn hold_relaxation<'py>(&self, py: Python<'py>, contact_point: f64, correction: &str) -> PyResult<Dict<'py>> {
         use id::usual::RampCorrection::{Factor, HalfRamp, Step};
         let correction =
             choice("correction", correction, &[("step", Step), ("half_ramp", HalfRamp), ("factor", Factor)])?;
@@ -287,15 +282,15 @@ impl Recording {
     #[new]
     #[pyo3(signature = (times, *, force=None, deflection=None, drive=None, depth=None))]
     fn new(
-        times: &Bound<'_, PyAny>,
-        force: Option<&Bound<'_, PyAny>>,
-        deflection: Option<&Bound<'_, PyAny>>,
-        drive: Option<&Bound<'_, PyAny>>,
-        depth: Option<&Bound<'_, PyAny>>,
+        times: &Object<'_>,
+        force: Option<&Object<'_>>,
+        deflection: Option<&Object<'_>>,
+        drive: Option<&Object<'_>>,
+        depth: Option<&Object<'_>>,
     ) -> PyResult<Recording> {
         let times = column("times", times)?;
         let n = times.len();
-        let given = |name: &str, values: Option<&Bound<'_, PyAny>>| -> PyResult<Option<Vec<f64>>> {
+        let given = |name: &str, values: Option<&Object<'_>>| -> PyResult<Option<Vec<f64>>> {
             let values = values.map(|values| column(name, values)).transpose()?;
             one_for_each("time", name, values.as_ref().map_or(n, Vec::len), n)?;
             Ok(values)
@@ -319,7 +314,7 @@ impl Recording {
         signature = (path, **reading),
         text_signature = "(path, *, decimal_comma=None, delimiter=None, skipped_lines=0, headings=None, only=None)"
     )]
-    fn from_csv(py: Python<'_>, path: PathBuf, reading: Option<&Bound<'_, PyDict>>) -> PyResult<Recording> {
+    fn from_csv(py: Python<'_>, path: PathBuf, reading: Option<&Dict<'_>>) -> PyResult<Recording> {
         let table = text_table(&path, None, reading)?;
         free(py, || id::Recording::from_table(&table)).or_raise().map(Recording)
     }
@@ -361,7 +356,7 @@ impl Recording {
     }
 
     /// A column by its name: "time", "force", "deflection", "drive" or "depth"; None without it.
-    fn column<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Option<Bound<'py, PyAny>>> {
+    fn column<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Option<Object<'py>>> {
         let column = choice("name", if name == "times" { "time" } else { name }, &COLUMNS)?(&self.0);
         Ok(column.map(|column| column.to_vec().into_pyarray(py).into_any()))
     }
@@ -378,7 +373,7 @@ impl Recording {
 }
 
 /// The model of a name, or of a pair of name and number of terms or cutoff [s].
-pub fn model(given: &Bound<'_, PyAny>) -> PyResult<id::Model> {
+pub fn model(given: &Object<'_>) -> PyResult<id::Model> {
     if let Ok((name, terms)) = given.extract::<(String, i64)>()
         && name == "prony"
     {

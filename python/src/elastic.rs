@@ -41,10 +41,10 @@ impl ElasticContact {
     fn new(
         py: Python<'_>,
         grid: &Grid,
-        geometry: &Bound<'_, PyAny>,
+        geometry: &Object<'_>,
         modulus: f64,
         kernel: Option<&InfluenceKernel>,
-        options: Option<&Bound<'_, PyDict>>,
+        options: Option<&Dict<'_>>,
     ) -> PyResult<ElasticContact> {
         let shapes = geometries(&grid.0, geometry)?;
         if shapes.is_empty() {
@@ -65,7 +65,7 @@ impl ElasticContact {
     /// iteration; a failure leaves the contact as it was.
     ///
     /// Returns the cost and accuracy: "iterations", "convolutions" (transforms in these units), "residual", and the "warnings" as lines.
-    fn solve<'py>(mut slf: Taken<'_, Self>, py: Python<'py>, load: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyDict>> {
+    fn solve<'py>(mut slf: Taken<'_, Self>, py: Python<'py>, load: &Object<'py>) -> PyResult<Dict<'py>> {
         let loads = loads(load)?;
         let ElasticContact { contact, cancel, .. } = &mut *slf;
         let report = interruptible(py, true, cancel, || contact.solve_unless(cancel, &loads))?;
@@ -79,7 +79,7 @@ impl ElasticContact {
 
     /// Displaces the surface before any pressure [m], positive into the bodies: an array of the shape of the grid. The next solution
     /// begins from there.
-    fn set_surface(mut slf: Taken<'_, Self>, displacement: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn set_surface(mut slf: Taken<'_, Self>, displacement: &Object<'_>) -> PyResult<()> {
         let cells = slf.contact.fields().grid().cells();
         let values = field("displacement", displacement, cells)?;
         slf.contact.set_surface(&values).or_raise()

@@ -139,7 +139,7 @@ fn field<'py>(
 getters! {by get ViscoelasticContact, of, py:
     /// How the last step of surfaces that attract each other went: contact problems ("passes"), those given up ("rejected"), the greatest
     /// "rise" of the energy over the sum of its parts, the energy "released" [J], and whether the surfaces "jumped". None without attraction.
-    passes: Option<Bound<'py, PyDict>> = {
+    passes: Option<Dict<'py>> = {
         let Some(of) = of.passes() else { return Ok(None) };
         Some(dict! { py; of { passes, rejected, rise, released, jumped } })
     };

@@ -22,7 +22,7 @@ impl FromPyObject<'_, '_> for Count {
 }
 
 /// The same of an argument with a default.
-pub fn count(given: &Bound<'_, PyAny>) -> PyResult<usize> {
+pub fn count(given: &Object<'_>) -> PyResult<usize> {
     given.extract::<Count>().map(|count| count.0)
 }
 

@@ -41,7 +41,7 @@ impl Times {
     }
 }
 
-pub fn times(name: &str, given: Option<Bound<'_, PyAny>>) -> PyResult<Option<vr::Times>> {
+pub fn times(name: &str, given: Option<Object<'_>>) -> PyResult<Option<vr::Times>> {
     let Some(given) = given else { return Ok(None) };
     match given.cast::<Times>() {
         Ok(times) => Ok(Some(times.get().times.clone())),

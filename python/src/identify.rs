@@ -10,7 +10,7 @@ use crate::fits::Fit;
 use crate::prelude::*;
 
 /// What is known of a property of each curve: one for all, or a list with one for each.
-fn per_curve(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Option<id::PerCurve>> {
+fn per_curve(name: &str, given: &Object<'_>) -> PyResult<Option<id::PerCurve>> {
     match given.cast::<pyo3::types::PyList>() {
         Ok(each) => {
             let each = each.iter().map(|known| Ok(nuisance(name, &known)?.unwrap_or(id::Nuisance::Fixed(0.0))));
@@ -21,7 +21,7 @@ fn per_curve(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Option<id::PerCur
 }
 
 /// What is known of a property of the measurement: None (fixed at 0 by default), a number (fixed), True (fitted), or ("from", start).
-fn nuisance(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Option<id::Nuisance>> {
+fn nuisance(name: &str, given: &Object<'_>) -> PyResult<Option<id::Nuisance>> {
     if given.is_none() {
         return Ok(None);
     }
@@ -54,7 +54,7 @@ const OF_CURVES: [OfCurves; 6] = [
 const OPTIONS: &str = "contact_point offset drift tilt drag stiffness noise known_sigma robust fix start";
 
 /// The identification with an option of this name.
-fn option(of: id::Identification, name: &str, given: &Bound<'_, PyAny>) -> PyResult<id::Identification> {
+fn option(of: id::Identification, name: &str, given: &Object<'_>) -> PyResult<id::Identification> {
     let mut curves = OF_CURVES.iter();
     if let Some((_, set)) = curves.find(|(own, _)| *own == name) {
         return Ok(if_given(of, per_curve(name, given)?, set));
@@ -121,8 +121,7 @@ impl Identification {
         let options =
             options.map_or_else(|| Ok(PyDict::new(py)), |given| Ok::<_, PyErr>(given.0.cast_into::<PyDict>()?))?;
         let mut of = id::Identification::new(self::model(&model)?);
-        let twice =
-            |name: Bound<'_, PyAny>| PyTypeError::new_err(format!("give {name} in fix or in start, not in both"));
+        let twice = |name: Object<'_>| PyTypeError::new_err(format!("give {name} in fix or in start, not in both"));
         if let (Ok(Some(fix)), Ok(Some(start))) = (options.get_item("fix"), options.get_item("start")) {
             let both = fix.try_iter()?.flatten().find(|name| start.contains(name).unwrap_or(false));
             both.map_or(Ok(()), |name| Err(twice(name)))?;
@@ -143,7 +142,7 @@ impl Identification {
     ///
     /// Raises ValueError if the curves do not suit, ConvergenceError if the search does not converge.
     #[pyo3(signature = (curves, *, progress=None))]
-    fn fit(slf: Bound<'_, Self>, curves: &Bound<'_, PyAny>, progress: Option<Function>) -> PyResult<Fit> {
+    fn fit(slf: Bound<'_, Self>, curves: &Object<'_>, progress: Option<Function>) -> PyResult<Fit> {
         let (curves, tips) = several(curves)?;
         let of = slf.get().of.clone();
         let fit = watched(slf.py(), progress, |watch| of.watched(watch).fit(&curves))?;
@@ -155,11 +154,7 @@ impl Identification {
     /// `progress` is called after each fit with the part that is done; where it returns False, the others are not fitted: `Cancelled` is in their
     /// place. Ctrl-C ends the call.
     #[pyo3(signature = (curves, *, progress=None))]
-    fn fit_each(
-        slf: Bound<'_, Self>,
-        curves: &Bound<'_, PyAny>,
-        progress: Option<Function>,
-    ) -> PyResult<Vec<Py<PyAny>>> {
+    fn fit_each(slf: Bound<'_, Self>, curves: &Object<'_>, progress: Option<Function>) -> PyResult<Vec<Py<PyAny>>> {
         let (py, (curves, tips)) = (slf.py(), several(curves)?);
         let (done, total) = (AtomicUsize::new(0), curves.len() as f64);
         let (ended, kept) = (Arc::new(AtomicBool::new(false)), Kept::default());
@@ -190,7 +185,7 @@ impl Identification {
         &self,
         py: Python<'py>,
         experiment: &Experiment,
-        values: &Bound<'py, PyDict>,
+        values: &Dict<'py>,
     ) -> PyResult<(Array<'py>, Array<'py>)> {
         let named = named(values)?;
         let named: Vec<(&str, f64)> = named.iter().map(|(name, value)| (&**name, *value)).collect();
@@ -205,7 +200,7 @@ impl Identification {
         &self,
         py: Python<'_>,
         experiments: Vec<Bound<'_, Experiment>>,
-        values: &Bound<'_, PyDict>,
+        values: &Dict<'_>,
         sigma: f64,
     ) -> PyResult<std::collections::BTreeMap<String, f64>> {
         let named = named(values)?;
@@ -233,7 +228,7 @@ getters! {Identification.of, of:
 /// >>> ranked(fits)[0][0].model
 /// 'Maxwell'
 #[pyfunction]
-pub fn ranked(fits: Vec<Bound<'_, PyAny>>) -> PyResult<Vec<(Bound<'_, Fit>, f64, f64)>> {
+pub fn ranked(fits: Vec<Object<'_>>) -> PyResult<Vec<(Bound<'_, Fit>, f64, f64)>> {
     let fits: Vec<Bound<'_, Fit>> = fits.into_iter().filter_map(|fit| fit.cast_into::<Fit>().ok()).collect();
     let ranked = id::ranked(fits.iter().map(|fit| Ok(fit.get().fit.clone()))).or_raise()?;
     let place = |(fit, difference, weight): (id::Fit, f64, f64)| {
@@ -246,7 +241,7 @@ pub fn ranked(fits: Vec<Bound<'_, PyAny>>) -> PyResult<Vec<(Bound<'_, Fit>, f64,
 type Several = (Vec<id::Curve>, Vec<Py<ElasticStates>>);
 
 /// The curves of the crate, and their tips.
-pub fn several(curves: &Bound<'_, PyAny>) -> PyResult<Several> {
+pub fn several(curves: &Object<'_>) -> PyResult<Several> {
     let own = |curve: &Bound<'_, Curve>| (curve.get().of.clone(), curve.get().tip.clone_ref(curve.py()));
     if let Ok(curve) = curves.cast::<Curve>() {
         return Ok([own(curve)].into_iter().unzip());
@@ -289,6 +284,6 @@ pub fn watched<T: Send>(
     }
 }
 
-fn named(values: &Bound<'_, PyDict>) -> PyResult<Vec<(String, f64)>> {
+fn named(values: &Dict<'_>) -> PyResult<Vec<(String, f64)>> {
     values.iter().map(|(name, value)| Ok((name.extract()?, value.extract()?))).collect()
 }

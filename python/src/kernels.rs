@@ -132,12 +132,7 @@ impl InfluenceKernel {
     /// With `out`, an array of float64 of the shape of the grid, into it: no array is made.
     /// Raises ValueError if the shape is another, a value is NaN, or `out` is read-only or not contiguous in C order.
     #[pyo3(signature = (pressure, out=None))]
-    fn convolve<'py>(
-        &self,
-        py: Python<'py>,
-        pressure: &Bound<'py, PyAny>,
-        out: Option<Bound<'py, PyAny>>,
-    ) -> PyResult<Array<'py>> {
+    fn convolve<'py>(&self, py: Python<'py>, pressure: &Object<'py>, out: Option<Object<'py>>) -> PyResult<Array<'py>> {
         let cells = self.kernel.grid().cells();
         let pressure = field("pressure", pressure, cells)?;
         let kernel = &self.kernel;

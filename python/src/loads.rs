@@ -89,7 +89,7 @@ made! {
 }
 
 /// Loads at times, from a sequence of (time, load).
-fn rows(table: &Bound<'_, PyAny>) -> PyResult<Vec<(f64, ld::Load)>> {
+fn rows(table: &Object<'_>) -> PyResult<Vec<(f64, ld::Load)>> {
     let rows: Vec<(f64, Bound<'_, Load>)> = table.extract()?;
     Ok(rows.into_iter().map(|(t, load)| (t, load.get().load)).collect())
 }
@@ -171,7 +171,7 @@ impl LoadHistory {
 
     /// Checks the laws of histories at times [s]: a load everywhere, breakpoints that ascend, smooth in between. Raises ValueError with the
     /// first violation.
-    fn check(&self, py: Python<'_>, times: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn check(&self, py: Python<'_>, times: &Object<'_>) -> PyResult<()> {
         let times = column("times", times)?;
         let verdict = free(py, || ld::laws::all(&*self.history, &times));
         no_violation(self.history.failure(), verdict)
@@ -179,9 +179,9 @@ impl LoadHistory {
 }
 
 fn of_columns(
-    times: &Bound<'_, PyAny>,
+    times: &Object<'_>,
     name: &str,
-    values: &Bound<'_, PyAny>,
+    values: &Object<'_>,
     load: fn(f64) -> ld::Load,
 ) -> PyResult<viscocontact::Result<ld::PiecewiseLinear>> {
     let rows = together(["times", name], times, values)?.into_iter().map(|(t, value)| (t, load(value)));
@@ -190,7 +190,7 @@ fn of_columns(
 
 impl LoadHistory {
     /// Any history: a `LoadHistory`, a load that is held, a sequence of (time, load), or a function.
-    pub fn any<'py>(given: &Bound<'py, PyAny>) -> PyResult<Bound<'py, LoadHistory>> {
+    pub fn any<'py>(given: &Object<'py>) -> PyResult<Bound<'py, LoadHistory>> {
         let py = given.py();
         if let Ok(history) = given.cast::<LoadHistory>() {
             return Ok(history.clone());
@@ -210,23 +210,23 @@ impl LoadHistory {
 }
 
 /// The history of the crate.
-pub fn history(given: &Bound<'_, PyAny>) -> PyResult<Arc<dyn History>> {
+pub fn history(given: &Object<'_>) -> PyResult<Arc<dyn History>> {
     Ok(Arc::clone(&LoadHistory::any(given)?.get().history))
 }
 
 /// The histories of a run: one, or a sequence with one for each body.
-pub fn histories<'py>(given: &Bound<'py, PyAny>) -> PyResult<Vec<Bound<'py, LoadHistory>>> {
+pub fn histories<'py>(given: &Object<'py>) -> PyResult<Vec<Bound<'py, LoadHistory>>> {
     let one = match LoadHistory::any(given) {
         Ok(one) => return Ok(vec![one]),
         Err(error) => error,
     };
-    let each = given.extract::<Vec<Bound<'_, PyAny>>>().ok().filter(|each| !each.is_empty());
+    let each = given.extract::<Vec<Object<'_>>>().ok().filter(|each| !each.is_empty());
     let each = each.and_then(|each| each.iter().map(LoadHistory::any).collect::<PyResult<_>>().ok());
     each.ok_or(one)
 }
 
 /// The loads of a step: one, or one for each body.
-pub fn loads(given: &Bound<'_, PyAny>) -> PyResult<Vec<ld::Load>> {
+pub fn loads(given: &Object<'_>) -> PyResult<Vec<ld::Load>> {
     if let Ok(load) = given.cast::<Load>() {
         return Ok(vec![load.get().load]);
     }

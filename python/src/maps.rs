@@ -77,7 +77,7 @@ impl HeightMap {
     #[pyo3(signature = (heights, lengths, periodic=false))]
     fn new(
         py: Python<'_>,
-        heights: &Bound<'_, PyAny>,
+        heights: &Object<'_>,
         lengths: PerAxis<f64>,
         periodic: bool,
     ) -> PyResult<PyClassInitializer<HeightMap>> {
@@ -146,7 +146,7 @@ impl HeightMap {
 
     /// A map of points (x, y, height) [m] on a regular grid in any order: an array of shape (n, 3).
     #[staticmethod]
-    fn from_points(py: Python<'_>, points: &Bound<'_, PyAny>) -> PyResult<Py<HeightMap>> {
+    fn from_points(py: Python<'_>, points: &Object<'_>) -> PyResult<Py<HeightMap>> {
         let points: Vec<[f64; 3]> = table("points", points)?;
         HeightMap::made(py, free(py, || geo::HeightMap::from_points(&points)).or_raise()?)
     }
@@ -211,14 +211,14 @@ impl HeightMap {
     }
 
     /// The map interpolated at the cells of a grid, and the error of that: a dict of "rms" and "max" [m], and the rms "of_rms_height".
-    fn resampled<'py>(&self, py: Python<'py>, grid: &Grid) -> PyResult<(Py<HeightMap>, Bound<'py, PyDict>)> {
+    fn resampled<'py>(&self, py: Python<'py>, grid: &Grid) -> PyResult<(Py<HeightMap>, Dict<'py>)> {
         let new = free(py, || self.0.resampled(&grid.0)).or_raise()?;
         let error = new.error;
         Ok((HeightMap::made(py, new.map)?, dict! { py; error { rms, max, of_rms_height } }))
     }
 
     /// A dict of "mean", "rms_height" [m], "skewness", "kurtosis", "rms_slope", "rms_slopes" along x1 and x2, and "rms_curvature" [1/m].
-    fn statistics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+    fn statistics<'py>(&self, py: Python<'py>) -> PyResult<Dict<'py>> {
         let of = free(py, || self.0.statistics()).or_raise()?;
         let slopes: (f64, f64) = of.rms_slopes.into();
         Ok(dict! { py;
@@ -238,7 +238,7 @@ impl HeightMap {
     }
 
     /// The height at `x1` along the line x2 = `x2` [m], NaN where there is none: a float or an array of the shape of `x1`.
-    fn height_at<'py>(&self, x1: &Bound<'py, PyAny>, x2: f64) -> PyResult<Bound<'py, PyAny>> {
+    fn height_at<'py>(&self, x1: &Object<'py>, x2: f64) -> PyResult<Object<'py>> {
         mapped("x1", x1, ALL, |x1| self.0.height_at(x1, x2).unwrap_or(f64::NAN), never)
     }
 

@@ -59,7 +59,7 @@ impl Material {
     #[pyo3(signature = (rheology, nu=None, *, bulk_modulus=None, bulk_ratio=None))]
     fn new(
         py: Python<'_>,
-        rheology: Bound<'_, PyAny>,
+        rheology: Object<'_>,
         nu: Option<f64>,
         bulk_modulus: Option<f64>,
         bulk_ratio: Option<f64>,
@@ -93,7 +93,7 @@ impl Material {
     }
 
     /// C(t) [1/Pa] at times [s], 1/E* of an elastic body: a float, or an array of the shape of `t`.
-    fn contact_compliance<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    fn contact_compliance<'py>(&self, t: &Object<'py>) -> PyResult<Object<'py>> {
         mapped("t", t, FROM_ZERO, |t| self.material.contact_compliance(t), || self.material.failure())
     }
 }

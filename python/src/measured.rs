@@ -37,8 +37,8 @@ impl Measurements {
     fn read<'py>(
         experiment: &str,
         (path, text): (PathBuf, Bound<'py, PyBytes>),
-        units: Option<Bound<'py, PyAny>>,
-        reading: Option<Bound<'py, PyDict>>,
+        units: Option<Object<'py>>,
+        reading: Option<Dict<'py>>,
     ) -> PyResult<Measurements> {
         let py = text.py();
         let kind = choice("experiment", experiment, &EXPERIMENTS)?;
@@ -90,8 +90,8 @@ impl Measurements {
         py: Python<'_>,
         experiment: &str,
         path: PathBuf,
-        units: Option<Bound<'_, PyAny>>,
-        reading: Option<Bound<'_, PyDict>>,
+        units: Option<Object<'_>>,
+        reading: Option<Dict<'_>>,
     ) -> PyResult<Measurements> {
         // made again from what the file has now
         let text = PyBytes::new(py, &std::fs::read(&path).map_err(unreadable(&path))?);
@@ -104,8 +104,8 @@ impl Measurements {
     fn _of_bytes(
         experiment: &str,
         text: Bound<'_, PyBytes>,
-        units: Option<Bound<'_, PyAny>>,
-        reading: Option<Bound<'_, PyDict>>,
+        units: Option<Object<'_>>,
+        reading: Option<Dict<'_>>,
     ) -> PyResult<Measurements> {
         Measurements::read(experiment, (OF_PICKLE.into(), text), units, reading)
     }
@@ -147,9 +147,9 @@ fn series_of(recipe: Recipe, series: rh::CreepSeries, extrapolated: bool) -> Rhe
 fn again<'py>(
     path: &Path,
     text: &Bound<'py, PyBytes>,
-    units: Option<Bound<'py, PyAny>>,
-    reading: Option<Bound<'py, PyDict>>,
-) -> PyResult<(TextTable, Units, Bound<'py, PyDict>)> {
+    units: Option<Object<'py>>,
+    reading: Option<Dict<'py>>,
+) -> PyResult<(TextTable, Units, Dict<'py>)> {
     let table = text_table(path, Some(text.as_bytes()), reading.as_ref())?;
     let (of_file, keywords) = (of_units(units.as_ref())?, dict! { text.py(); "units": units });
     reading.map_or(Ok(()), |reading| keywords.update(reading.as_mapping()))?;
@@ -157,7 +157,7 @@ fn again<'py>(
 }
 
 /// A text file, read as keywords say: `decimal_comma`, `delimiter`, `skipped_lines`, `headings` by column, and `only` some of them.
-pub fn text_table(path: &Path, text: Option<&[u8]>, reading: Option<&Bound<'_, PyDict>>) -> PyResult<TextTable> {
+pub fn text_table(path: &Path, text: Option<&[u8]>, reading: Option<&Dict<'_>>) -> PyResult<TextTable> {
     use Delimiter::{Blanks, Comma, Semicolon, Tab};
     let delimiters = [("comma", Comma), ("semicolon", Semicolon), ("tab", Tab), ("blanks", Blanks)];
     let (mut format, mut headings, mut only) = (TextFormat::default(), BTreeMap::<usize, String>::new(), None);
@@ -186,7 +186,7 @@ pub fn text_table(path: &Path, text: Option<&[u8]>, reading: Option<&Bound<'_, P
     Ok(table)
 }
 
-fn of_units(units: Option<&Bound<'_, PyAny>>) -> PyResult<Units> {
+fn of_units(units: Option<&Object<'_>>) -> PyResult<Units> {
     match units {
         None => Ok(Units::SI),
         Some(units) if units.extract::<&str>().is_ok_and(|text| text == "headings") => Ok(Units::OF_HEADINGS),
@@ -269,9 +269,9 @@ impl MasterCurve {
         experiment: &str,
         path: PathBuf,
         reference: f64,
-        units: Option<Bound<'_, PyAny>>,
+        units: Option<Object<'_>>,
         vertical_shifts: bool,
-        reading: Option<Bound<'_, PyDict>>,
+        reading: Option<Dict<'_>>,
     ) -> PyResult<MasterCurve> {
         let text = PyBytes::new(py, &std::fs::read(&path).map_err(unreadable(&path))?);
         MasterCurve::read(experiment, (path, text), reference, units, vertical_shifts, reading)
@@ -284,9 +284,9 @@ impl MasterCurve {
         experiment: &str,
         text: Bound<'_, PyBytes>,
         reference: f64,
-        units: Option<Bound<'_, PyAny>>,
+        units: Option<Object<'_>>,
         vertical_shifts: bool,
-        reading: Option<Bound<'_, PyDict>>,
+        reading: Option<Dict<'_>>,
     ) -> PyResult<MasterCurve> {
         MasterCurve::read(experiment, (OF_PICKLE.into(), text), reference, units, vertical_shifts, reading)
     }
@@ -329,7 +329,7 @@ impl MasterCurve {
     }
 
     /// The points of the curve: reduced times [s] or angular frequencies [rad/s] and values, by function.
-    fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+    fn points<'py>(&self, py: Python<'py>) -> PyResult<Dict<'py>> {
         let all = PyDict::new(py);
         for (x, function, value) in self.curve.points() {
             let name = format!("{function:?}").to_lowercase();
@@ -362,9 +362,9 @@ impl MasterCurve {
         experiment: &str,
         (path, text): (PathBuf, Bound<'py, PyBytes>),
         reference: f64,
-        units: Option<Bound<'py, PyAny>>,
+        units: Option<Object<'py>>,
         vertical_shifts: bool,
-        reading: Option<Bound<'py, PyDict>>,
+        reading: Option<Dict<'py>>,
     ) -> PyResult<MasterCurve> {
         let py = text.py();
         let kind = choice("experiment", experiment, &EXPERIMENTS)?;

@@ -27,7 +27,7 @@ macro_rules! observed {
 
             /// Relative errors due to the mesh, measured by elastic contacts on half and a quarter of the cells along each side: "approach", "max_pressure" (None where it does not converge), "pressure_field" (Σ |δp| over
             /// Σ p), "area"; None where they are too few.
-            fn mesh_error<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
+            fn mesh_error<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Option<Dict<'py>>> {
                 let contact = slf.shown()?;
                 let Some(error) = free(py, || contact.mesh_error()).or_raise()? else { return Ok(None) };
                 Ok(Some(dict! { py; error { approach, max_pressure, pressure_field, area } }))
@@ -46,12 +46,7 @@ macro_rules! observed {
             /// Arrays "position" [m], "pressure", "displacement", "gap" and "traction" along the line of cells in the direction of the axis `along`
             /// (0 or 1) that contains the other coordinate `at` [m].
             #[pyo3(signature = (along=0, at=0.0))]
-            fn profile<'py>(
-                slf: Shared<'_, Self>,
-                py: Python<'py>,
-                along: usize,
-                at: f64,
-            ) -> PyResult<Bound<'py, PyDict>> {
+            fn profile<'py>(slf: Shared<'_, Self>, py: Python<'py>, along: usize, at: f64) -> PyResult<Dict<'py>> {
                 let line = slf.shown()?.profile(axis(along)?, at).or_raise()?;
                 let named = [
                     ("position", line.positions),
@@ -72,11 +67,7 @@ macro_rules! observed {
 
             /// About a point [m] along x1 and x2: the "center_of_pressure" [m], the "reach" to the ends of the contact, back and ahead along each
             /// axis [m], and its "skewness", (ahead − back)/(ahead + back); None without contact.
-            fn asymmetry<'py>(
-                slf: Shared<'_, Self>,
-                py: Python<'py>,
-                about: [f64; 2],
-            ) -> PyResult<Option<Bound<'py, PyDict>>> {
+            fn asymmetry<'py>(slf: Shared<'_, Self>, py: Python<'py>, about: [f64; 2]) -> PyResult<Option<Dict<'py>>> {
                 let Some(of) = slf.shown()?.asymmetry(about).or_raise()? else { return Ok(None) };
                 Ok(Some(dict! { py; of { center_of_pressure, reach }, "skewness": of.skewness() }))
             }
@@ -100,7 +91,7 @@ observed!(ViscoelasticContact);
 observed!(ElasticContact);
 observed!(Fields);
 
-type Labelled<'py> = (Bound<'py, PyAny>, Vec<Bound<'py, PyDict>>);
+type Labelled<'py> = (Object<'py>, Vec<Dict<'py>>);
 
 fn labelled<'py>(py: Python<'py>, grid: &viscocontact::Grid, patches: ob::Patches) -> PyResult<Labelled<'py>> {
     let of = |patch: &ob::Patch| {
@@ -122,7 +113,7 @@ fn labelled<'py>(py: Python<'py>, grid: &viscocontact::Grid, patches: ob::Patche
 pub fn patches<'py>(
     py: Python<'py>,
     grid: &Grid,
-    pressure: &Bound<'py, PyAny>,
+    pressure: &Object<'py>,
     periodic: [bool; 2],
 ) -> PyResult<Labelled<'py>> {
     let pressure = field("pressure", pressure, grid.0.cells())?;

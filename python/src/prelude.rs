@@ -10,6 +10,10 @@ pub use pyo3::gc::PyVisit;
 pub use pyo3::prelude::*;
 pub use pyo3::types::{PyBytes, PyDict, PyTuple};
 
+/// Any object of Python, and a dict.
+pub type Object<'py> = Bound<'py, PyAny>;
+pub type Dict<'py> = Bound<'py, PyDict>;
+
 pub use crate::arrays::{
     ALL, Array, FROM_ZERO, column, if_given, line, mapped, never, one_for_each, rows_of, to_array, together,
 };

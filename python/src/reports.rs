@@ -20,7 +20,7 @@ impl StepReport {
 }
 
 /// The numbers behind warnings, by their names.
-pub fn figures<'py>(py: Python<'py>, of: &ct::Figures) -> PyResult<Bound<'py, PyDict>> {
+pub fn figures<'py>(py: Python<'py>, of: &ct::Figures) -> PyResult<Dict<'py>> {
     Ok(dict! { py;
         of { max_slope, compression, cells_across, cells_in_wave, periods, cells_in_zone, modulus, touch, unmeasured, wake }
     })
@@ -31,7 +31,7 @@ numbers!(StepReport);
 getters! {StepReport, of, py:
     /// The numbers behind the warnings, None where the scene is far from the limit: "max_slope", "compression", "cells_across", "cells_in_wave", "periods",
     /// "cells_in_zone", "modulus" [Pa], "touch" [m], "unmeasured" and "wake".
-    figures: PyResult<Bound<'py, PyDict>> = figures(py, &of.figures);
+    figures: PyResult<Dict<'py>> = figures(py, &of.figures);
     /// Time at the end of the step [s].
     time: f64 = of.time;
     /// Length of the step [s]; 0 for a jump of the load.

@@ -124,26 +124,26 @@ impl Rheology {
     /// >>> Rheology.function(lambda t: 1e-6 * (1 + t**2)).check([0.0, 1.0, 2.0, 3.0])
     /// Traceback (most recent call last):
     /// ValueError: ...
-    fn check(&self, py: Python<'_>, times: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn check(&self, py: Python<'_>, times: &Object<'_>) -> PyResult<()> {
         let times = column("times", times)?;
         let verdict = free(py, || rh::laws::all(&*self.body, &times));
         no_violation(self.body.failure(), verdict)
     }
 
     /// J(t) [1/Pa] at times [s]: a float, or an array of the shape of `t`.
-    fn creep_compliance<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    fn creep_compliance<'py>(&self, t: &Object<'py>) -> PyResult<Object<'py>> {
         mapped("t", t, FROM_ZERO, |t| self.body.creep_compliance(t), || self.body.failure())
     }
 
     /// G(t) [Pa] at times [s], without an immediate dashpot. Raises ValueError without an exponential series (`fitted`).
-    fn relaxation_modulus<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    fn relaxation_modulus<'py>(&self, t: &Object<'py>) -> PyResult<Object<'py>> {
         let spectrum = self.spectrum()?.relaxation();
         mapped("t", t, FROM_ZERO, |t| spectrum.modulus(t), never)
     }
 
     /// G*(ω) = G′ + i G″ [Pa] at angular frequencies [rad/s]: a complex number, or an array of the shape of `omega`. G*(−ω) is the complex
     /// conjugate of G*(ω). Raises ValueError without an exponential series (`fitted`).
-    fn complex_modulus<'py>(&self, py: Python<'py>, omega: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    fn complex_modulus<'py>(&self, py: Python<'py>, omega: &Object<'py>) -> PyResult<Object<'py>> {
         let spectrum = self.spectrum()?;
         let nan = Complex64::new(f64::NAN, f64::NAN);
         let modulus = |omega: f64| if omega.is_nan() { nan } else { spectrum.complex_modulus(omega) };
@@ -183,6 +183,6 @@ pub fn series(of: &CreepSpectrum) -> Series {
     (of.glassy(), of.fluidity(), of.terms().to_vec())
 }
 
-fn shares(terms: &Bound<'_, PyAny>) -> PyResult<Vec<rh::PronyTerm>> {
+fn shares(terms: &Object<'_>) -> PyResult<Vec<rh::PronyTerm>> {
     Ok(pairs("terms", terms)?.into_iter().map(|(share, time)| rh::PronyTerm { share, time }).collect())
 }

@@ -126,13 +126,7 @@ impl Run {
     /// >>> len(run.events[0]) >= 3 and len(run.events[1]) >= 3
     /// True
     #[pyo3(signature = (quantity, *, up=None, down=None))]
-    fn stop_when(
-        &self,
-        py: Python<'_>,
-        quantity: &Bound<'_, PyAny>,
-        up: Option<f64>,
-        down: Option<f64>,
-    ) -> PyResult<()> {
+    fn stop_when(&self, py: Python<'_>, quantity: &Object<'_>, up: Option<f64>, down: Option<f64>) -> PyResult<()> {
         let crossing = match (up, down) {
             (Some(value), None) if value.is_finite() => Crossing::Up(value),
             (None, Some(value)) if value.is_finite() => Crossing::Down(value),
@@ -193,7 +187,7 @@ impl Run {
     /// >>> curve = contact.follow(Load.force(1.0), 10.0, sample_at=[1.0, 2.0, 5.0]).table()
     /// >>> curve["time"]
     /// array([1., 2., 5.])
-    fn table<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+    fn table<'py>(&self, py: Python<'py>) -> PyResult<Dict<'py>> {
         let mut columns: [Vec<f64>; 4] = Default::default();
         while self.next(py)?.is_some() {
             let passed = on_run!(self, py, run => free(py, || if self.sampled {
@@ -215,7 +209,7 @@ impl Run {
 
     /// A dict of the "steps" taken, "time" [s], its end "until" [s], "share_of_time" and "share_of_decades" that are over.
     #[getter]
-    fn progress<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+    fn progress<'py>(&self, py: Python<'py>) -> PyResult<Dict<'py>> {
         let at = on_run!(self, py, run => run.progress());
         Ok(dict! { py;
             at { steps, time, until },
@@ -232,7 +226,7 @@ impl Run {
 
     /// Where the error of a run in space comes from, relative: "time", "pressure", "solver", and of the mesh "mesh_approach",
     /// "mesh_max_pressure", "mesh_area"; None where there is no estimate. "text" says so in words.
-    fn error_budget<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+    fn error_budget<'py>(&self, py: Python<'py>) -> PyResult<Dict<'py>> {
         let Of::Space(contact) = &self.of else {
             return Err(PyTypeError::new_err("only runs in space have an error budget"));
         };
@@ -261,7 +255,7 @@ type Quantity<C> = Box<dyn Fn(&C) -> f64 + Send + Sync>;
 type Named<C> = (&'static str, fn(&C) -> f64);
 
 /// The quantity of a name, or of a function of the contact.
-fn watched<C: Led>(given: &Bound<'_, PyAny>, recipe: &Arc<Recipe>) -> PyResult<(Quantity<C>, Option<Function>)> {
+fn watched<C: Led>(given: &Object<'_>, recipe: &Arc<Recipe>) -> PyResult<(Quantity<C>, Option<Function>)> {
     if let Ok(function) = given.extract::<Function>() {
         let (called, recipe) = (function.clone(), Arc::clone(recipe));
         let value = move |contact: &C| {
@@ -330,7 +324,7 @@ impl Sample {
     /// With `fields_to` how exact the pressure is: "error" in time, relative (None without an estimate), and the "elastic_contacts" and
     /// "convolutions" that it took.
     #[getter]
-    fn field<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
+    fn field<'py>(&self, py: Python<'py>) -> PyResult<Option<Dict<'py>>> {
         let Some(of) = self.field else { return Ok(None) };
         Ok(Some(dict! { py; of { error, elastic_contacts, convolutions } }))
     }

@@ -31,7 +31,7 @@ impl Shape {
         Ok(Shape { geometry, recipe: Recipe::new(py, maker, arguments)? })
     }
 
-    pub fn with_keywords(self, keywords: &Bound<'_, PyDict>) -> PyResult<Shape> {
+    pub fn with_keywords(self, keywords: &Dict<'_>) -> PyResult<Shape> {
         Ok(Shape { recipe: self.recipe.with_keywords(Some(keywords))?, ..self })
     }
 }
@@ -120,7 +120,7 @@ impl Shape {
     /// >>> Shape.gap_on(grid, (x1**2 + x2**2) / 2e-2)
     /// Shape.gap_on(Grid((4, 4), (0.001, 0.001)), <array [4, 4]>)
     #[staticmethod]
-    fn gap_on(py: Python<'_>, grid: Bound<'_, Grid>, gap: Bound<'_, PyAny>) -> PyResult<Shape> {
+    fn gap_on(py: Python<'_>, grid: Bound<'_, Grid>, gap: Object<'_>) -> PyResult<Shape> {
         let on = grid.get().0.clone();
         let values = crate::arrays::field("gap", &gap, on.cells())?;
         // as it was read: another thread may write into the array
@@ -139,7 +139,7 @@ impl Shape {
     const ARRAY_UFUNC: Option<bool> = None;
 
     /// `sum` of shapes begins with 0.
-    fn __radd__<'py>(slf: Bound<'py, Self>, other: &Bound<'py, PyAny>) -> PyResult<Bound<'py, Shape>> {
+    fn __radd__<'py>(slf: Bound<'py, Self>, other: &Object<'py>) -> PyResult<Bound<'py, Shape>> {
         let needed = "a Shape is added to a Shape: Shape.gap_on(grid, array) makes one of an array";
         if number(other) == Some(0.0) { Ok(slf) } else { Err(PyTypeError::new_err(needed)) }
     }
@@ -170,7 +170,7 @@ changes! {Shape, slf:
 }
 
 /// The shapes of the rigid bodies of a contact: a shape, an array of the gap on the grid, or a sequence of shapes.
-pub fn geometries(grid: &vc::Grid, given: &Bound<'_, PyAny>) -> PyResult<Vec<Arc<dyn Geometry>>> {
+pub fn geometries(grid: &vc::Grid, given: &Object<'_>) -> PyResult<Vec<Arc<dyn Geometry>>> {
     if let Ok(shape) = given.cast::<Shape>() {
         return Ok(vec![Arc::clone(&shape.get().geometry)]);
     }

@@ -66,7 +66,7 @@ impl StatesContact {
 
 getters! {by get StatesContact, of, py:
     /// Where the work along the surface went since the contact was made [J]: "work" = "slip" + "stored" + "creep".
-    lateral_work: Bound<'py, PyDict> = {
+    lateral_work: Dict<'py> = {
         let of = of.lateral_work();
         dict! { py; of { work, slip, stored, creep } }
     };

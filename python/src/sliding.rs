@@ -15,7 +15,7 @@ pub fn complex(function: &Function, omega: f64, kept: &Kept) -> Complex64 {
 }
 
 /// A velocity along x1, or along x1 and x2.
-pub fn velocity(given: &Bound<'_, PyAny>) -> PyResult<[f64; 2]> {
+pub fn velocity(given: &Object<'_>) -> PyResult<[f64; 2]> {
     let along = number(given).map(|speed| [speed, 0.0]);
     let needed = "velocity: a speed along x1, or a pair along x1 and x2 [m/s], is needed";
     along.map_or_else(|| given.extract(), Ok).map_err(|_: PyErr| PyTypeError::new_err(needed))
@@ -56,7 +56,7 @@ numbers!(SlidingReport);
 
 getters! {SlidingReport, of, py:
     /// The numbers behind the warnings, as those of a step.
-    figures: PyResult<Bound<'py, PyDict>> = figures(py, &of.figures);
+    figures: PyResult<Dict<'py>> = figures(py, &of.figures);
     /// Velocity of the indenter over the bodies [m/s].
     velocity: (f64, f64) = of.velocity.into();
     /// Normal force [N].
@@ -123,12 +123,12 @@ impl SteadySliding {
     fn new(
         py: Python<'_>,
         grid: Bound<'_, Grid>,
-        geometry: Bound<'_, PyAny>,
+        geometry: Object<'_>,
         material: Bound<'_, Material>,
         base: Option<Bound<'_, Material>>,
         modulus: Option<Function>,
         counter_motion: Option<&str>,
-        options: Option<&Bound<'_, PyDict>>,
+        options: Option<&Dict<'_>>,
     ) -> PyResult<SteadySliding> {
         let mut builder = builder(grid.get(), &geometry, material.get(), options)?;
         if let Some(name) = counter_motion {
@@ -168,12 +168,7 @@ impl SteadySliding {
 
     /// The state under a load, a force or an approach, of the indenter that moves with `velocity` [m/s]: along x1, or a pair along x1 and
     /// x2. Ctrl-C ends the search within an iteration, and keeps the state found last.
-    fn at(
-        mut slf: Taken<'_, Self>,
-        py: Python<'_>,
-        velocity: &Bound<'_, PyAny>,
-        load: &Load,
-    ) -> PyResult<SlidingReport> {
+    fn at(mut slf: Taken<'_, Self>, py: Python<'_>, velocity: &Object<'_>, load: &Load) -> PyResult<SlidingReport> {
         let (velocity, load) = (self::velocity(velocity)?, load.load);
         let SteadySliding { sliding, cancel, kept, has_state, .. } = &mut *slf;
         let found = kept.raise_or(interruptible(py, true, cancel, || sliding.at(velocity, load)));
@@ -191,8 +186,8 @@ impl SteadySliding {
     fn sweep(
         mut slf: Taken<'_, Self>,
         py: Python<'_>,
-        velocities: &Bound<'_, PyAny>,
-        loads: &Bound<'_, PyAny>,
+        velocities: &Object<'_>,
+        loads: &Object<'_>,
         law: Option<&TimeTemperature>,
         temperatures: Option<Vec<f64>>,
         progress: Option<Function>,
@@ -222,12 +217,7 @@ impl SteadySliding {
     /// Bytes that a contact in steady motion takes at most, before it is built. Takes the arguments of `ViscoelasticContact`.
     #[staticmethod]
     #[pyo3(signature = (grid, geometry, material, **options))]
-    fn memory(
-        grid: &Grid,
-        geometry: &Bound<'_, PyAny>,
-        material: &Material,
-        options: Option<&Bound<'_, PyDict>>,
-    ) -> PyResult<u64> {
+    fn memory(grid: &Grid, geometry: &Object<'_>, material: &Material, options: Option<&Dict<'_>>) -> PyResult<u64> {
         builder(grid, geometry, material, options)?.sliding_memory().or_raise()
     }
 
@@ -274,7 +264,7 @@ numbers!(SlidingTable);
 impl SlidingTable {
     /// Arrays with a value for each state: "velocity1", "velocity2" [m/s], "temperature" [K] (NaN without), "force" [N], "approach" [m],
     /// "friction", "lateral_force1", "lateral_force2" [N], "contact_area" [m²], "mean_gap" [m] and "dissipation" [W].
-    fn columns<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+    fn columns<'py>(&self, py: Python<'py>) -> PyResult<Dict<'py>> {
         crate::arrays::columns(py, COLUMNS.map(|(name, of)| (name, self.0.states().iter().map(of).collect())))
     }
 

@@ -111,11 +111,11 @@ impl ElasticStates {
     fn sweep(
         py: Python<'_>,
         grid: Bound<'_, Grid>,
-        geometry: Bound<'_, PyAny>,
+        geometry: Object<'_>,
         level: Option<f64>,
         approach: Option<f64>,
         material: Option<Bound<'_, Material>>,
-        load: Option<Bound<'_, PyAny>>,
+        load: Option<Object<'_>>,
         until: Option<f64>,
         kernel: Option<Bound<'_, InfluenceKernel>>,
         accuracy: f64,
@@ -125,7 +125,7 @@ impl ElasticStates {
         tilt: Tilts,
         temperature: Option<Bound<'_, TemperatureHistory>>,
         progress: Option<Function>,
-        settings: Option<Bound<'_, PyDict>>,
+        settings: Option<Dict<'_>>,
     ) -> PyResult<ElasticStates> {
         let reach = match (level, approach, &material, &load, until) {
             (Some(level), None, None, None, None) => st::Reach::Level(level),
@@ -163,27 +163,27 @@ impl ElasticStates {
     }
 
     /// Approach of the elastic contact [m] at levels [m²].
-    fn approach<'py>(&self, level: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    fn approach<'py>(&self, level: &Object<'py>) -> PyResult<Object<'py>> {
         mapped("level", level, FROM_ZERO, |level| self.states.approach(level), never)
     }
 
     /// Level [m²] of the elastic contact at approaches [m]; NaN beyond the last state.
-    fn level_at<'py>(&self, approach: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    fn level_at<'py>(&self, approach: &Object<'py>) -> PyResult<Object<'py>> {
         mapped("approach", approach, ALL, |approach| self.states.level_at(approach), never)
     }
 
     /// Contact area [m²] at levels [m²].
-    fn area<'py>(&self, level: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    fn area<'py>(&self, level: &Object<'py>) -> PyResult<Object<'py>> {
         mapped("level", level, FROM_ZERO, |level| self.states.area(level), never)
     }
 
     /// Stiffness over the contact modulus [m] at levels [m²].
-    fn stiffness<'py>(&self, level: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    fn stiffness<'py>(&self, level: &Object<'py>) -> PyResult<Object<'py>> {
         mapped("level", level, FROM_ZERO, |level| self.states.stiffness(level), never)
     }
 
     /// The states as arrays: "level" [m²], "approach" [m], "stiffness" [m], "area" [m²], "cells", "patches".
-    fn table<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+    fn table<'py>(&self, py: Python<'py>) -> PyResult<Dict<'py>> {
         let column = |of: fn(&st::ElasticState) -> f64| {
             self.states.states().iter().map(of).collect::<Vec<f64>>().into_pyarray(py)
         };
@@ -198,7 +198,7 @@ impl ElasticStates {
     }
 
     /// Conductance of the contact at levels [m²] of two conductors of `resistivities`, electrical [Ω m] in S, or thermal [m K/W] in W/K.
-    fn conductance<'py>(&self, level: &Bound<'py, PyAny>, resistivities: [f64; 2]) -> PyResult<Bound<'py, PyAny>> {
+    fn conductance<'py>(&self, level: &Object<'py>, resistivities: [f64; 2]) -> PyResult<Object<'py>> {
         mapped("level", level, FROM_ZERO, |level| self.states.conductance(level, resistivities), never)
     }
 
@@ -222,8 +222,8 @@ impl ElasticStates {
         &self,
         py: Python<'py>,
         materials: Vec<Bound<'py, Material>>,
-        load: &Bound<'py, PyAny>,
-        times: &Bound<'py, PyAny>,
+        load: &Object<'py>,
+        times: &Object<'py>,
         tolerance: f64,
     ) -> PyResult<Array<'py>> {
         let (history, times) = (history(load)?, column("times", times)?);

@@ -71,7 +71,7 @@ impl StatesContact {
         exact_states: bool,
         friction: Option<f64>,
         estimated_friction: Option<f64>,
-        sheared_by: Option<Bound<'_, PyAny>>,
+        sheared_by: Option<Object<'_>>,
     ) -> PyResult<StatesContact> {
         let mut contact = st::StatesContact::new(&states.get().states, &material.get().material).or_raise()?;
         contact =

@@ -72,11 +72,11 @@ impl Study {
         py: Python<'_>,
         shape: Py<Shape>,
         material: Py<Material>,
-        load: &Bound<'_, PyAny>,
+        load: &Object<'_>,
         until: f64,
         accuracy: f64,
         ask: Vec<String>,
-        quantities: Option<&Bound<'_, PyDict>>,
+        quantities: Option<&Dict<'_>>,
         fields: Vec<f64>,
         kernel: Option<Py<PyAny>>,
         domain: Option<[f64; 2]>,
@@ -91,9 +91,7 @@ impl Study {
         let (geometry, body) = (&*shape.get().geometry, &material.get().material);
         let (made, temperature_of) =
             (kernel.as_ref(), temperature.as_ref().map(|temperature| &temperature.get().history));
-        let own = |(name, of): (Bound<'_, PyAny>, Bound<'_, PyAny>)| {
-            Ok((name.extract::<String>()?, of.extract::<Function>()?))
-        };
+        let own = |(name, of): (Object<'_>, Object<'_>)| Ok((name.extract::<String>()?, of.extract::<Function>()?));
         let own: Vec<(String, Function)> = quantities.into_iter().flatten().map(own).collect::<PyResult<_>>()?;
         let asked = ask.iter().map(|name| choice("ask", name, &QUANTITIES)).collect::<PyResult<Vec<_>>>()?;
         let mut listener = Listener::new(progress);

@@ -118,7 +118,7 @@ impl TemperatureHistory {
     }
 
     /// The temperature [K] at times [s].
-    fn at<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    fn at<'py>(&self, t: &Object<'py>) -> PyResult<Object<'py>> {
         mapped("t", t, FROM_ZERO, |t| self.history.at(t), never)
     }
 

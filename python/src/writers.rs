@@ -5,7 +5,7 @@ use viscocontact::output::{self as vo, Earlier, Field, Format, Metadata};
 use crate::fields::Showing;
 use crate::prelude::*;
 
-pub fn metadata(title: &str, notes: Option<&Bound<'_, PyDict>>) -> PyResult<Metadata> {
+pub fn metadata(title: &str, notes: Option<&Dict<'_>>) -> PyResult<Metadata> {
     notes.into_iter().flatten().try_fold(Metadata::new(title), |metadata, (key, value)| {
         Ok(metadata.note(key.str()?.to_string(), value.str()?.to_string()))
     })
@@ -67,9 +67,9 @@ impl CsvHistory {
     #[pyo3(signature = (path, contact, *, title="", notes=None, columns=vec![], earlier="refuse"))]
     fn new(
         path: PathBuf,
-        contact: &Bound<'_, PyAny>,
+        contact: &Object<'_>,
         title: &str,
-        notes: Option<&Bound<'_, PyDict>>,
+        notes: Option<&Dict<'_>>,
         columns: Vec<String>,
         earlier: &str,
     ) -> PyResult<CsvHistory> {
@@ -88,12 +88,7 @@ impl CsvHistory {
 
     /// Appends the row of the last step, with the values of the additional columns.
     #[pyo3(signature = (contact, report, columns=vec![]))]
-    fn record(
-        mut slf: Taken<'_, Self>,
-        contact: &Bound<'_, PyAny>,
-        report: &StepReport,
-        columns: Vec<f64>,
-    ) -> PyResult<()> {
+    fn record(mut slf: Taken<'_, Self>, contact: &Object<'_>, report: &StepReport, columns: Vec<f64>) -> PyResult<()> {
         with_either!(contact, contact => slf.history.record(contact, &report.0, &columns))
     }
 }
@@ -135,7 +130,7 @@ impl FrameSeries {
         format: &str,
         fields: Option<Vec<String>>,
         title: &str,
-        notes: Option<&Bound<'_, PyDict>>,
+        notes: Option<&Dict<'_>>,
         earlier: &str,
     ) -> PyResult<FrameSeries> {
         let format = choice("format", format, &FORMATS)?;
@@ -165,7 +160,7 @@ getters! {FrameSeries, of:
 impl ViscoelasticContact {
     /// The scene as JSON on one line: grid, settings, materials, units and conventions.
     #[pyo3(signature = (title="", notes=None))]
-    fn describe(slf: Shared<'_, Self>, title: &str, notes: Option<&Bound<'_, PyDict>>) -> PyResult<String> {
+    fn describe(slf: Shared<'_, Self>, title: &str, notes: Option<&Dict<'_>>) -> PyResult<String> {
         Ok(metadata(title, notes)?.json(slf.get()?))
     }
 }
