@@ -102,7 +102,7 @@ fn roll(scene: &RollingCylinder, material: &Material, velocity: f64, cells: usiz
         profile: points.filter(|(x, _)| near(*x)).map(|(x, p)| (x - axis, p)).collect(),
         peak: contact.fields().max_pressure(),
         width: contact.contact_area() / grid.lengths()[1],
-        friction: contact.fields().lateral_force(&cylinder)[0] / contact.force(),
+        friction: contact.fields().slope_force(&cylinder)[0] / contact.force(),
         distance,
         steps,
         convolutions,

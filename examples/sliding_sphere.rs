@@ -119,7 +119,7 @@ fn steady(bodies: &Bodies, cells: usize, speeds: usize, output: &File) -> Result
         let ratio = 10f64.powf(-1.5 + 3.0 * k as f64 / (speeds - 1) as f64);
         let velocity = ratio * bodies.glassy / bodies.tau;
         let friction = |(contact, sphere): &(ViscoelasticContact, Shifted)| {
-            contact.fields().lateral_force(sphere)[0] / contact.force()
+            contact.fields().slope_force(sphere)[0] / contact.force()
         };
         let slid = bodies.slide(velocity, side)?;
         let (own, other) = (friction(&slid), friction(&bodies.slide(velocity, 2.0 * side)?));

@@ -119,7 +119,8 @@ export function section(canvas, { pressure, displacement, gap, cells, side, peak
   context.strokeStyle = PALE;
   context.strokeRect(...box);
   context.fillStyle = INK;
-  for (const value of ticks(low * 1.4, tall * 0.5)) if (y(value) > box[1]) label(context, String(value), 42, y(value) + 4, "right");
+  // those beside the unit are left out
+  for (const value of ticks(low * 1.4, tall * 0.5)) if (y(value) > box[1] + 16) label(context, String(value), 42, y(value) + 4, "right");
   label(context, "µm", 4, height * 0.5 + 18, "left");
   for (const value of ticks(-half, half)) label(context, String(value), upper.x(value), height - 18, "center");
   label(context, "x1 [mm]", upper.x(0), height - 4, "center");

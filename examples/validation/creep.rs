@@ -254,7 +254,7 @@ pub fn rolling() -> Outcome {
     let load = Load::force(scene.per_length);
     march(&mut contact, Axis::X1, scene.reach, load, (grid.lengths()[0], 2e-4))?;
     let [behind, ahead] = exact.ends();
-    let friction = contact.fields().lateral_force(&cylinder)[0] / contact.force();
+    let friction = contact.fields().slope_force(&cylinder)[0] / contact.force();
     let axis = 1e3 * (0.5 * grid.lengths()[0] - 2.0 * relaxed);
     let line = exact.positions.iter().zip(&exact.pressure).map(|(x, p)| (1e3 * x, 1e-3 * p)).collect();
     let dots = along_x1(&contact).into_iter().map(|(x, p)| (x - axis, p));

@@ -107,7 +107,7 @@ impl Slider {
         for _ in 0..cells {
             contact.step_over([1, 0], contact.grid().spacing()[0] / velocity, self.load())?;
         }
-        Ok(contact.fields().lateral_force(shape)[0] / contact.force())
+        Ok(contact.fields().slope_force(shape)[0] / contact.force())
     }
 }
 
@@ -225,7 +225,7 @@ pub fn wave() -> Outcome {
         for _ in 0..(distance / side) as usize {
             contact.step_over([1, 0], side / velocity, load)?;
         }
-        Ok(contact.fields().lateral_force(&wave)[0] / area)
+        Ok(contact.fields().slope_force(&wave)[0] / area)
     };
     let exact = |periods: [f64; 2], velocity: f64| {
         let [q1, q2] = periods.map(wave_number);

@@ -88,6 +88,15 @@ fn stepping(settings: &Scene) -> Stepping {
     Stepping::fixed(settings.get(Key::Duration) / settings.get(Key::Steps))
 }
 
+/// What the crate refuses, with the remedy that the page has.
+fn told(error: Error) -> String {
+    let text = error.to_string();
+    match text.split_once(": enlarge the grid, ") {
+        Some((what, _)) => format!("{what}: enlarge the side of the grid"),
+        None => text,
+    }
+}
+
 impl Simulation {
     /// At rest.
     ///
@@ -95,7 +104,7 @@ impl Simulation {
     /// What the settings or the crate refuse.
     pub fn new(settings: &Scene) -> std::result::Result<Simulation, String> {
         settings.check()?;
-        Simulation::built(settings).map_err(|error| error.to_string())
+        Simulation::built(settings).map_err(told)
     }
 
     fn built(settings: &Scene) -> Result<Simulation> {
@@ -122,7 +131,7 @@ impl Simulation {
     /// # Errors
     /// Why a step failed. What was seen before stays.
     pub fn advance(&mut self) -> std::result::Result<bool, String> {
-        self.advanced().map_err(|error| error.to_string())
+        self.advanced().map_err(told)
     }
 
     fn advanced(&mut self) -> Result<bool> {

@@ -129,7 +129,10 @@ fn every_scene_runs_to_its_end_or_says_why_not() {
         };
         match refused {
             None => assert_eq!(simulation.frames.series[0].last(), Some(&settings.get(Key::Duration)), "{name}"),
-            Some(error) => assert!(name == "Too small a grid" && error.contains("enlarge the grid"), "{name}: {error}"),
+            Some(error) => assert!(
+                name == "Too small a grid" && error.ends_with(": enlarge the side of the grid"),
+                "{name}: {error}"
+            ),
         }
     }
 }

@@ -48,7 +48,7 @@ assert abs(effective_cube(across) / 0.433012702 - 1) < 1e-2 and abs(effective_cu
 cells, side = (64 if arguments.quick else 128), 1e-3
 grid = vc.Grid(cells, side)
 surface = vc.HeightMap.rough(grid, 0.5 * side, 16 * side / cells, rms_slope=0.1, seed=3)
-rubber = vc.Material(vc.Rheology.prony(1e6, [(4e6, 1.0), (2e6, 1e3)]))
+rubber = vc.Material(vc.Rheology.generalized_maxwell(1e6, [(4e6, 1.0), (2e6, 1e3)]))
 contact = vc.ViscoelasticContact(grid, surface, rubber, kernel=vc.InfluenceKernel.periodic(grid))
 run = contact.follow(vc.Load.force(0.16), 1e5, tolerance=1e-2, sample_at=vc.Times.decades(1e-2, 2))
 states = []

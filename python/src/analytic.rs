@@ -1,5 +1,8 @@
 //! Closed forms to compare with.
 
+use std::ffi::CString;
+
+use pyo3::exceptions::PyUserWarning;
 use viscocontact::analytic as an;
 use viscocontact::load::LoadHistory as Load;
 
@@ -7,15 +10,46 @@ use crate::arrays::check;
 use crate::prelude::*;
 use crate::sliding::complex;
 
-/// Hertz: a sphere of `radius` [m] on a body of contact `modulus` E* [Pa] under `force` [N]: "contact_radius" [m], "max_pressure" [Pa]
-/// and "approach" [m].
-///
-/// >>> round(hertz(10e-3, 4e6, 1.0)["contact_radius"], 6)
-/// 0.001233
-#[pyfunction]
-pub fn hertz<'py>(py: Python<'py>, radius: f64, modulus: f64, force: f64) -> PyResult<Bound<'py, PyDict>> {
-    let of = an::Hertz::new(radius, modulus, force).or_raise()?;
-    Ok(dict! { py; "contact_radius": of.contact_radius, "max_pressure": of.max_pressure, "approach": of.approach })
+/// Closed forms as dicts: a function of each, of what `new` of the crate takes, and the fields that it gives.
+macro_rules! forms {
+    ($($(#[$meta:meta])* $name:ident($($given:ident: $type:ty),*) = $form:ident { $($field:ident),* };)*) => {$(
+        #[pyfunction]
+        $(#[$meta])*
+        pub fn $name<'py>(py: Python<'py>, $($given: $type),*) -> PyResult<Dict<'py>> {
+            let of = an::$form::new($($given),*).or_raise()?;
+            Ok(dict! { py; of { $($field),* } })
+        }
+    )*};
+}
+
+forms! {
+    /// Hertz: a sphere of `radius` [m] on a body of contact `modulus` E* [Pa] under `force` [N]: "contact_radius" [m], "max_pressure" [Pa]
+    /// and "approach" [m].
+    ///
+    /// >>> round(hertz(10e-3, 4e6, 1.0)["contact_radius"], 6)
+    /// 0.001233
+    hertz(radius: f64, modulus: f64, force: f64) = Hertz { contact_radius, max_pressure, approach };
+
+    /// Hertz: a paraboloid of `radii` of curvature along x1 and x2 [m]: "semi_axes" of the contact [m], "max_pressure" [Pa] and "approach" [m].
+    ///
+    /// >>> round(hertz_ellipse((10e-3, 10e-3), 4e6, 1.0)["semi_axes"][0], 6)     # as hertz
+    /// 0.001233
+    hertz_ellipse(radii: [f64; 2], modulus: f64, force: f64) = HertzEllipse { semi_axes, max_pressure, approach };
+
+    /// A rigid flat circular punch of `radius` [m] under `force` [N] at the point (`eccentricity`, 0) [m]: "approach" [m] and "tilt" [rad].
+    ///
+    /// >>> rigid_punch(1e-3, 1e6, 1.0)["approach"]
+    /// 0.0005
+    #[pyo3(signature = (radius, modulus, force, eccentricity=0.0))]
+    rigid_punch(radius: f64, modulus: f64, force: f64, eccentricity: f64) = RigidPunch { approach, tilt };
+
+    /// Hunter: a cylinder of `radius` [m] that rolls or slides on a body of one retardation time under `force` on a unit of its length [N/m]:
+    /// "half_width" and "center" of the contact [m], and "friction". `compliances` are C₀ at once and C₁ delayed [1/Pa], `reach` the velocity
+    /// times the retardation time [m].
+    ///
+    /// >>> 0 < rolling_cylinder(10e-3, (1e-7, 1e-7), 100.0, 1e-3)["friction"] < 0.1
+    /// True
+    rolling_cylinder(radius: f64, compliances: [f64; 2], force: f64, reach: f64) = RollingCylinder { half_width, center, friction };
 }
 
 /// A sphere on a viscoelastic half-space under a force for which the contact never shrinks (Lee and Radok).
@@ -33,7 +67,7 @@ pub struct GrowingSphere {
 #[pymethods]
 impl GrowingSphere {
     #[new]
-    fn new(radius: f64, material: Bound<'_, Material>, load: &Bound<'_, PyAny>) -> PyResult<GrowingSphere> {
+    fn new(radius: f64, material: Bound<'_, Material>, load: &Object<'_>) -> PyResult<GrowingSphere> {
         let (py, given) = (load.py(), LoadHistory::any(load)?);
         let load = Arc::clone(&given.get().history);
         let sphere = an::GrowingSphere::new(radius, &material.get().material, Arc::clone(&load));
@@ -43,17 +77,17 @@ impl GrowingSphere {
     }
 
     /// Contact radius [m] at times [s].
-    fn contact_radius<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    fn contact_radius<'py>(&self, t: &Object<'py>) -> PyResult<Object<'py>> {
         mapped("t", t, FROM_ZERO, |t| self.sphere.contact_radius(t), || self.load.failure())
     }
 
     /// Approach [m] at times [s].
-    fn approach<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    fn approach<'py>(&self, t: &Object<'py>) -> PyResult<Object<'py>> {
         mapped("t", t, FROM_ZERO, |t| self.sphere.approach(t), || self.load.failure())
     }
 
     /// Pressure [Pa] at distances from the centre [m] and one time [s].
-    fn pressure<'py>(&self, r: &Bound<'py, PyAny>, t: f64) -> PyResult<Bound<'py, PyAny>> {
+    fn pressure<'py>(&self, r: &Object<'py>, t: f64) -> PyResult<Object<'py>> {
         check("t", t, FROM_ZERO)?;
         mapped("r", r, FROM_ZERO, |r| self.sphere.pressure(r, t), || self.load.failure())
     }
@@ -61,50 +95,8 @@ impl GrowingSphere {
 
 made_by_calls!(GrowingSphere);
 
-/// Hertz: a paraboloid of `radii` of curvature along x1 and x2 [m]: "semi_axes" of the contact [m], "max_pressure" [Pa] and "approach" [m].
-///
-/// >>> round(hertz_ellipse((10e-3, 10e-3), 4e6, 1.0)["semi_axes"][0], 6)     # as hertz
-/// 0.001233
-#[pyfunction]
-pub fn hertz_ellipse<'py>(py: Python<'py>, radii: [f64; 2], modulus: f64, force: f64) -> PyResult<Bound<'py, PyDict>> {
-    let of = an::HertzEllipse::new(radii, modulus, force).or_raise()?;
-    Ok(dict! { py; "semi_axes": of.semi_axes, "max_pressure": of.max_pressure, "approach": of.approach })
-}
-
-/// A rigid flat circular punch of `radius` [m] under `force` [N] at the point (`eccentricity`, 0) [m]: "approach" [m] and "tilt" [rad].
-///
-/// >>> rigid_punch(1e-3, 1e6, 1.0)["approach"]
-/// 0.0005
-#[pyfunction]
-#[pyo3(signature = (radius, modulus, force, eccentricity=0.0))]
-pub fn rigid_punch<'py>(
-    py: Python<'py>,
-    radius: f64,
-    modulus: f64,
-    force: f64,
-    eccentricity: f64,
-) -> PyResult<Bound<'py, PyDict>> {
-    let of = an::RigidPunch::new(radius, modulus, force, eccentricity).or_raise()?;
-    Ok(dict! { py; "approach": of.approach, "tilt": of.tilt })
-}
-
-/// Hunter: a cylinder of `radius` [m] that rolls or slides on a body of one retardation time under `force` on a unit of its length [N/m]:
-/// "half_width" and "center" of the contact [m], and "friction". `compliances` are C₀ at once and C₁ delayed [1/Pa], `reach` the velocity
-/// times the retardation time [m].
-///
-/// >>> 0 < rolling_cylinder(10e-3, (1e-7, 1e-7), 100.0, 1e-3)["friction"] < 0.1
-/// True
-#[pyfunction]
-pub fn rolling_cylinder<'py>(
-    py: Python<'py>,
-    radius: f64,
-    compliances: [f64; 2],
-    force: f64,
-    reach: f64,
-) -> PyResult<Bound<'py, PyDict>> {
-    let of = an::RollingCylinder::new(radius, compliances, force, reach).or_raise()?;
-    Ok(dict! { py; "half_width": of.half_width, "center": of.center, "friction": of.friction })
-}
+/// The lag of the bulk up to which a pull is within 7 %.
+const MOST_LAG: f64 = 0.1;
 
 /// Closed forms of bodies that stick: a class of each, its getters, and its functions of a number.
 macro_rules! sticking {
@@ -254,18 +246,17 @@ sticking! {
     ]
 }
 
-/// The edge of a contact that opens on a creeping body (Schapery, Greenwood) under an attraction of `work` [J/m²] and `range` [m].
-///
-/// `zone` is the length of the zone of the attraction over E*ρ²/w: π/4 of a constant traction, about 1.4 of an exponential one. The theory holds
-/// while the bulk of the body is relaxed: with the relaxation time τ, for speeds V τ ≤ 0.03 R^⅓ (w/E*)^⅔ of a sphere of radius R (4 %; 7 % at 0.1).
-///
-/// >>> edge = OpeningEdge(Material(Rheology.relaxing(4e6, 1e6, 0.1)), 0.05, 1e-7)
-/// >>> edge.work(1e-9) < edge.work(1e-4) < 4.1 * 0.05      # from w to w times the ratio of the moduli
-/// True
-#[pyclass(frozen, module = "viscocontact")]
-pub struct OpeningEdge {
-    edge: an::OpeningEdge,
-    recipe: Recipe,
+made! {
+    /// The edge of a contact that opens on a creeping body (Schapery, Greenwood) under an attraction of `work` [J/m²] and `range` [m].
+    ///
+    /// `zone` is the length of the zone of the attraction over E*ρ²/w: π/4 of a constant traction, about 1.4 of an exponential one. The theory holds
+    /// while the bulk of the body is relaxed: with the relaxation time τ, for speeds V τ ≤ 0.03 R^⅓ (w/E*)^⅔ of a sphere of radius R (4 %; 7 % at 0.1).
+    ///
+    /// >>> edge = OpeningEdge(Material(Rheology.relaxing(4e6, 1e6, 0.1)), 0.05, 1e-7)
+    /// >>> edge.work(1e-9) < edge.work(1e-4) < 4.1 * 0.05      # from w to w times the ratio of the moduli
+    /// True
+    #[pyclass(frozen, module = "viscocontact")]
+    OpeningEdge(edge: an::OpeningEdge)
 }
 
 #[pymethods]
@@ -283,7 +274,7 @@ impl OpeningEdge {
         let edge = zone.map_or(Ok(edge.clone()), |zone| edge.with_zone(zone)).or_raise()?;
         let keywords = dict! { py; "zone": zone };
         let recipe = Recipe::new(py, "", (material, work, range))?.with_keywords(Some(&keywords))?;
-        Ok(OpeningEdge { edge, recipe })
+        Ok(OpeningEdge::by(recipe, edge))
     }
 
     /// The work that opens a unit of area [J/m²] at a speed of the edge [m/s].
@@ -292,20 +283,18 @@ impl OpeningEdge {
     }
 
     /// A sphere of `radius` [m] drawn back from an `approach` [m] at a `speed` [m/s], at the maximum pull: a dict of "force" [N], "approach" and
-    /// "contact_radius" [m], "edge_speed" [m/s] and "work" [J/m²]. At speeds beyond the range of the theory the force is too large.
-    fn pull_off<'py>(&self, py: Python<'py>, radius: f64, approach: f64, speed: f64) -> PyResult<Bound<'py, PyDict>> {
+    /// "contact_radius" [m], "edge_speed" [m/s], "work" [J/m²] and "lag", V τ/(R^⅓ (w/E*)^⅔) with the longest relaxation time: beyond the range of the
+    /// theory, where it exceeds 0.1, the force is too large, and a UserWarning says so.
+    fn pull_off<'py>(&self, py: Python<'py>, radius: f64, approach: f64, speed: f64) -> PyResult<Dict<'py>> {
         let of = free(py, || self.edge.pull_off(radius, approach, speed)).or_raise()?;
-        Ok(dict! { py;
-            "force": of.force,
-            "approach": of.approach,
-            "contact_radius": of.contact_radius,
-            "edge_speed": of.edge_speed,
-            "work": of.work,
-        })
+        if of.lag > MOST_LAG {
+            let lag = of.lag;
+            let text = format!("the bulk lags by {lag:.3}, which must be at most {MOST_LAG}: the pull is too large");
+            PyErr::warn(py, &py.get_type::<PyUserWarning>(), &CString::new(text)?, 1)?;
+        }
+        Ok(dict! { py; of { force, approach, contact_radius, edge_speed, work, lag } })
     }
 }
-
-made_by_calls!(OpeningEdge);
 
 getters! {OpeningEdge.edge, of:
     /// The length E*ρ²/w of the relaxed body [m].
@@ -328,29 +317,29 @@ getters! {OpeningEdge.edge, of:
 /// gamma : float
 ///     The number γ of the theory, 0 to 1.
 ///
-/// Returns (coefficient of friction, share of the surface in contact).
+/// Returns a dict of the coefficient of "friction" and the "contact_share" of the surface.
 ///
 /// >>> grid = Grid(32, 1e-3)
 /// >>> road = HeightMap.rough(grid, 0.5e-3, 0.1e-3, rms_slope=0.1)
-/// >>> rubber = Rheology.prony(1e6, [(1e7, 1e-4)])
-/// >>> friction, share = persson_friction(grid, road, lambda w: 4 * rubber.complex_modulus(w), 1e5, (1.0, 0.0), 0.5)
-/// >>> 0 < friction < 1 and 0 < share < 1
+/// >>> rubber = Rheology.generalized_maxwell(1e6, [(1e7, 1e-4)])
+/// >>> theory = persson_friction(grid, road, lambda w: 4 * rubber.complex_modulus(w), 1e5, (1.0, 0.0), 0.5)
+/// >>> 0 < theory["friction"] < 1 and 0 < theory["contact_share"] < 1
 /// True
 #[pyfunction]
-pub fn persson_friction(
-    py: Python<'_>,
+pub fn persson_friction<'py>(
+    py: Python<'py>,
     grid: &Grid,
     surface: &Shape,
     modulus: Function,
     pressure: f64,
-    velocity: &Bound<'_, PyAny>,
+    velocity: &Object<'py>,
     gamma: f64,
-) -> PyResult<(f64, f64)> {
+) -> PyResult<Dict<'py>> {
     let velocity = crate::sliding::velocity(velocity)?;
     let surface = Arc::clone(&surface.geometry);
     let kept = Kept::default();
     let modulus = |omega| complex(&modulus, omega, &kept);
     let theory = free(py, || an::PerssonFriction::new(&grid.0, &*surface, modulus, pressure, velocity, gamma));
     let theory = kept.raise_or(theory.or_raise())?;
-    Ok((theory.friction, theory.contact_share))
+    Ok(dict! { py; theory { friction, contact_share } })
 }

@@ -7,17 +7,16 @@ use crate::prelude::*;
 use viscocontact::UserError;
 use viscocontact::adhesion::{self as ad, Attraction as Law};
 
-/// A law of the attraction between surfaces: traction [Pa] over gap [m].
-///
-/// Laws have the `work` of separation w [J/m²] and a `range` ρ [m], or the `greatest` traction [Pa] in its place.
-///
-/// >>> law = Attraction.exponential(0.05, 0.1e-6)
-/// >>> law.work, law.range
-/// (0.05, 1e-07)
-#[pyclass(frozen, module = "viscocontact")]
-pub struct Attraction {
-    pub law: Arc<dyn Law>,
-    recipe: Recipe,
+made! {
+    /// A law of the attraction between surfaces: traction [Pa] over gap [m].
+    ///
+    /// Laws have the `work` of separation w [J/m²] and a `range` ρ [m], or the `greatest` traction [Pa] in its place.
+    ///
+    /// >>> law = Attraction.exponential(0.05, 0.1e-6)
+    /// >>> law.work, law.range
+    /// (0.05, 1e-07)
+    #[pyclass(frozen, module = "viscocontact")]
+    Attraction(pub law: Arc<dyn Law>) of impl Law + 'static => Arc::new
 }
 
 /// Laws by their work, and their range or maximum traction.
@@ -45,7 +44,7 @@ macro_rules! laws {
                     let keywords = dict! { py; "range": range, "greatest": greatest };
                     $(keywords.set_item(stringify!($more), $more)?;)*
                     let recipe = Recipe::new(py, stringify!($name), (work,))?.with_keywords(Some(&keywords))?;
-                    Ok(Attraction { law: Arc::new(law.or_raise()?), recipe })
+                    Ok(Attraction::by(recipe, law.or_raise()?))
                 }
             )*
         }
@@ -79,7 +78,7 @@ impl Attraction {
         let law = OwnLaw { traction, energy, failure: Mutex::default() };
         let _ = (law.traction(0.0), law.energy(0.0));
         nothing_raised(law.failure())?;
-        Ok(Attraction { law: Arc::new(law), recipe })
+        Ok(Attraction::by(recipe, law))
     }
 
     /// Checks the laws of attractions: a traction that falls with the gap, and the energy its integral. Raises ValueError with the first
@@ -90,12 +89,12 @@ impl Attraction {
     }
 
     /// Traction [Pa] at gaps [m].
-    fn traction<'py>(&self, gap: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    fn traction<'py>(&self, gap: &Object<'py>) -> PyResult<Object<'py>> {
         mapped("gap", gap, FROM_ZERO, |gap| self.law.traction(gap), || self.law.failure())
     }
 
     /// Energy [J/m²] that opens the gap [m] to infinity.
-    fn energy<'py>(&self, gap: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    fn energy<'py>(&self, gap: &Object<'py>) -> PyResult<Object<'py>> {
         mapped("gap", gap, FROM_ZERO, |gap| self.law.energy(gap), || self.law.failure())
     }
 
@@ -119,8 +118,6 @@ getters! {Attraction.law, of:
         nothing_raised(of.failure()).map(|()| range)
     };
 }
-
-made_by_calls!(Attraction);
 
 /// A law of two functions in Python.
 struct OwnLaw {

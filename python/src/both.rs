@@ -68,7 +68,7 @@ macro_rules! both {
                 let mut contact = Taken::try_from(&slf)?;
                 let cancel = Arc::clone(&contact.cancel);
                 let run = contact.held.follow(options, PyList::new(slf.py(), loads)?.into_any().unbind(), cancel)?;
-                Ok(Run::of(slf.clone().unbind().into(), run, sampled, progress))
+                Ok(Run::of(slf.as_any().extract()?, run, sampled, progress))
             }
 
             fn __copy__(slf: Shared<'_, Self>, py: Python<'_>) -> PyResult<$contact> {

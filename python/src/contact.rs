@@ -114,9 +114,9 @@ impl ViscoelasticContact {
     fn new(
         py: Python<'_>,
         grid: Bound<'_, Grid>,
-        geometry: Bound<'_, PyAny>,
+        geometry: Object<'_>,
         material: Bound<'_, Material>,
-        options: Option<&Bound<'_, PyDict>>,
+        options: Option<&Dict<'_>>,
     ) -> PyResult<ViscoelasticContact> {
         let builder = builder(grid.get(), &geometry, material.get(), options)?;
         let contact = free(py, || builder.build()).or_raise()?;
@@ -137,7 +137,7 @@ impl ViscoelasticContact {
     /// ValueError: ...
     /// >>> contact.time, contact.force
     /// (0.0, 0.0)
-    fn step(mut slf: Taken<'_, Self>, py: Python<'_>, dt: f64, load: &Bound<'_, PyAny>) -> PyResult<StepReport> {
+    fn step(mut slf: Taken<'_, Self>, py: Python<'_>, dt: f64, load: &Object<'_>) -> PyResult<StepReport> {
         let loads = loads(load)?;
         slf.compute(py, |contact, cancel| contact.step_unless(cancel, dt, &loads)).map(StepReport)
     }
@@ -148,7 +148,7 @@ impl ViscoelasticContact {
         py: Python<'_>,
         cells: [isize; 2],
         dt: f64,
-        load: &Bound<'_, PyAny>,
+        load: &Object<'_>,
     ) -> PyResult<StepReport> {
         let loads = loads(load)?;
         slf.compute(py, |contact, _| contact.step_over(cells, dt, &loads)).map(StepReport)
@@ -157,18 +157,17 @@ impl ViscoelasticContact {
     /// A step at whose end `shape` is where `position(t)` [m] puts it, a function of time that returns (x1, x2), or a pair of start
     /// [m] and velocity [m/s]; `track` adds the gap of a fixed shape. The bodies do not move. Ctrl-C waits for the end of the step.
     ///
-    /// Returns the report and (position, lateral force [N], power [W]).
+    /// Returns the report, and a dict of the "position" [m], the "lateral_force" [N] (`slope_force` of the shape) and the "power" [W].
     #[pyo3(signature = (shape, position, dt, load, *, track=None))]
-    #[allow(clippy::type_complexity)]
-    fn step_along(
+    fn step_along<'py>(
         mut slf: Taken<'_, Self>,
-        py: Python<'_>,
+        py: Python<'py>,
         shape: &Shape,
-        position: Bound<'_, PyAny>,
+        position: Object<'py>,
         dt: f64,
         load: &Load,
         track: Option<&Shape>,
-    ) -> PyResult<(StepReport, ([f64; 2], [f64; 2], f64))> {
+    ) -> PyResult<(StepReport, Dict<'py>)> {
         let shape = Arc::clone(&shape.geometry);
         let mut travel = if position.is_callable() {
             let function: Function = position.extract()?;
@@ -182,11 +181,11 @@ impl ViscoelasticContact {
         }
         let load = load.load;
         let report = slf.compute(py, |contact, _| contact.step_along(&travel, dt, load))?;
-        Ok((StepReport(report.step), (report.position, report.lateral_force, report.power)))
+        Ok((StepReport(report.step), dict! { py; report { position, lateral_force, power } }))
     }
 
     /// Replaces the shapes between two steps, moved or changed: a shape, an array of gaps, or a sequence with one for each body.
-    fn set_geometry(mut slf: Taken<'_, Self>, py: Python<'_>, geometry: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn set_geometry(mut slf: Taken<'_, Self>, py: Python<'_>, geometry: &Object<'_>) -> PyResult<()> {
         let contact = slf.held.free()?;
         let shapes = geometries(contact.grid(), geometry)?;
         let shapes: Vec<&dyn vc::geometry::Geometry> = shapes.iter().map(|shape| &**shape as _).collect();

@@ -52,8 +52,8 @@ impl Experiment {
     #[new]
     #[pyo3(signature = (times, drive, tip, *, stiffness=None))]
     fn new(
-        times: &Bound<'_, PyAny>,
-        drive: &Bound<'_, PyAny>,
+        times: &Object<'_>,
+        drive: &Object<'_>,
         tip: &Bound<'_, ElasticStates>,
         stiffness: Option<f64>,
     ) -> PyResult<Experiment> {
@@ -71,13 +71,13 @@ impl Experiment {
 
     /// The times [s].
     #[getter]
-    fn times<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
+    fn times<'py>(&self, py: Python<'py>) -> Object<'py> {
         self.of.protocol().times().to_vec().into_pyarray(py).into_any()
     }
 
     /// The drive [m].
     #[getter]
-    fn drive<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
+    fn drive<'py>(&self, py: Python<'py>) -> Object<'py> {
         self.of.protocol().drive().to_vec().into_pyarray(py).into_any()
     }
 
@@ -148,7 +148,7 @@ calls!(Curve);
 #[pymethods]
 impl Curve {
     #[new]
-    fn new(experiment: &Experiment, force: &Bound<'_, PyAny>) -> PyResult<Curve> {
+    fn new(experiment: &Experiment, force: &Object<'_>) -> PyResult<Curve> {
         let of = id::Curve::new(experiment.of.clone(), column("force", force)?).or_raise()?;
         Ok(Curve { of, tip: experiment.tip.clone_ref(force.py()) })
     }
@@ -156,9 +156,7 @@ impl Curve {
     /// The force [N].
     #[getter]
     fn force<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
-        let force = self.of.force().to_vec();
-        let n = force.len();
-        to_array(py, force, &[n])
+        line(py, self.of.force().to_vec())
     }
 
     /// The part from the first time to before the last one [s].
@@ -195,15 +193,10 @@ impl Curve {
     /// >>> read = Curve(experiment, force).oliver_pharr(0.0, lambda h: 6.2832 * 10e-6 * h)
     /// >>> abs(read["modulus"] / 1e9 - 1) < 0.02
     /// True
-    fn oliver_pharr<'py>(&self, py: Python<'py>, contact_point: f64, area: Function) -> PyResult<Bound<'py, PyDict>> {
+    fn oliver_pharr<'py>(&self, py: Python<'py>, contact_point: f64, area: Function) -> PyResult<Dict<'py>> {
         let area = |h: f64| raised_number(area.call((h,)), f64::NAN);
         let of = free(py, || id::usual::oliver_pharr(&self.of, contact_point, area)).or_raise()?;
-        Ok(dict! { py;
-            "stiffness": of.stiffness,
-            "contact_depth": of.contact_depth,
-            "area": of.area,
-            "modulus": of.modulus,
-        })
+        Ok(dict! { py; of { stiffness, contact_depth, area, modulus } })
     }
 
     /// Checks points, signs and units; raises ValueError with the cure.
@@ -225,34 +218,20 @@ impl Curve {
 
     /// The elastic modulus of the approach: "modulus" [Pa], "offset" [N], "contact_point" [m].
     #[pyo3(signature = (contact_point=None))]
-    fn loading_modulus<'py>(&self, py: Python<'py>, contact_point: Option<f64>) -> PyResult<Bound<'py, PyDict>> {
+    fn loading_modulus<'py>(&self, py: Python<'py>, contact_point: Option<f64>) -> PyResult<Dict<'py>> {
         let of = free(py, || id::usual::loading_modulus(&self.of, contact_point)).or_raise()?;
-        Ok(dict! { py;
-            "modulus": of.modulus,
-            "offset": of.offset,
-            "contact_point": of.contact_point,
-        })
+        Ok(dict! { py; of { modulus, offset, contact_point } })
     }
 
     /// The relaxation of a hold as E∞ + E₁ exp(−t/τ), with the `correction` of its ramp ("step", "half_ramp" or "factor"): "equilibrium",
     /// "relaxing" and their sum "glassy" [Pa], "time" [s].
     #[pyo3(signature = (contact_point=0.0, correction="factor"))]
-    fn hold_relaxation<'py>(
-        &self,
-        py: Python<'py>,
-        contact_point: f64,
-        correction: &str,
-    ) -> PyResult<Bound<'py, PyDict>> {
+    fn hold_relaxation<'py>(&self, py: Python<'py>, contact_point: f64, correction: &str) -> PyResult<Dict<'py>> {
         use id::usual::RampCorrection::{Factor, HalfRamp, Step};
         let correction =
             choice("correction", correction, &[("step", Step), ("half_ramp", HalfRamp), ("factor", Factor)])?;
         let of = free(py, || id::usual::hold_relaxation(&self.of, contact_point, correction)).or_raise()?;
-        Ok(dict! { py;
-            "equilibrium": of.equilibrium,
-            "relaxing": of.relaxing,
-            "glassy": of.glassy(),
-            "time": of.time,
-        })
+        Ok(dict! { py; of { equilibrium, relaxing, time }, "glassy": of.glassy() })
     }
 
     /// The experiment.
@@ -269,6 +248,17 @@ impl Curve {
         visit.call(&self.tip)
     }
 }
+
+/// A column of a recording, by name.
+type Column = (&'static str, fn(&id::Recording) -> Option<&Vec<f64>>);
+
+const COLUMNS: [Column; 5] = [
+    ("time", |of| Some(&of.times)),
+    ("force", |of| of.force.as_ref()),
+    ("deflection", |of| of.deflection.as_ref()),
+    ("drive", |of| of.drive.as_ref()),
+    ("depth", |of| of.depth.as_ref()),
+];
 
 /// The columns of a measured curve, from arrays or a text file with headings.
 ///
@@ -292,32 +282,27 @@ impl Recording {
     #[new]
     #[pyo3(signature = (times, *, force=None, deflection=None, drive=None, depth=None))]
     fn new(
-        times: &Bound<'_, PyAny>,
-        force: Option<&Bound<'_, PyAny>>,
-        deflection: Option<&Bound<'_, PyAny>>,
-        drive: Option<&Bound<'_, PyAny>>,
-        depth: Option<&Bound<'_, PyAny>>,
+        times: &Object<'_>,
+        force: Option<&Object<'_>>,
+        deflection: Option<&Object<'_>>,
+        drive: Option<&Object<'_>>,
+        depth: Option<&Object<'_>>,
     ) -> PyResult<Recording> {
         let times = column("times", times)?;
         let n = times.len();
-        let given = |name: &str, values: Option<&Bound<'_, PyAny>>| -> PyResult<Option<Vec<f64>>> {
-            let Some(values) = values.map(|values| column(name, values)).transpose()? else { return Ok(None) };
-            let m = values.len();
-            if m == n {
-                Ok(Some(values))
-            } else {
-                Err(PyValueError::new_err(format!("{name}: {m} given, {n} needed, one for each time")))
-            }
+        let given = |name: &str, values: Option<&Object<'_>>| -> PyResult<Option<Vec<f64>>> {
+            let values = values.map(|values| column(name, values)).transpose()?;
+            one_for_each("time", name, values.as_ref().map_or(n, Vec::len), n)?;
+            Ok(values)
         };
         let (force, deflection) = (given("force", force)?, given("deflection", deflection)?);
         let (drive, depth) = (given("drive", drive)?, given("depth", depth)?);
         let recording = id::Recording { times, force, deflection, drive, depth, columns: Vec::new() };
-        let columns = [&recording.force, &recording.deflection, &recording.drive, &recording.depth];
         let refused = |what: &str| Err(PyValueError::new_err(what.to_owned()));
         if !recording.times.is_sorted_by(|one, next| one < next) {
             return refused("times: they must ascend, each once");
         }
-        if columns.into_iter().flatten().next().is_none() {
+        if COLUMNS[1..].iter().all(|(_, column)| column(&recording).is_none()) {
             return refused("give force or deflection, and drive or depth: there is no column but the times");
         }
         Ok(Recording(recording))
@@ -329,7 +314,7 @@ impl Recording {
         signature = (path, **reading),
         text_signature = "(path, *, decimal_comma=None, delimiter=None, skipped_lines=0, headings=None, only=None)"
     )]
-    fn from_csv(py: Python<'_>, path: PathBuf, reading: Option<&Bound<'_, PyDict>>) -> PyResult<Recording> {
+    fn from_csv(py: Python<'_>, path: PathBuf, reading: Option<&Dict<'_>>) -> PyResult<Recording> {
         let table = text_table(&path, None, reading)?;
         free(py, || id::Recording::from_table(&table)).or_raise().map(Recording)
     }
@@ -353,13 +338,9 @@ impl Recording {
     /// The arrays of a pickle; what a file named its columns is not kept.
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
         let (py, of) = (slf.py(), &slf.get().0);
-        let array = |values: &Option<Vec<f64>>| values.clone().map(|values| values.into_pyarray(py));
-        let keywords = dict! { py;
-            "force": array(&of.force),
-            "deflection": array(&of.deflection),
-            "drive": array(&of.drive),
-            "depth": array(&of.depth),
-        };
+        let array = |values: Option<&Vec<f64>>| values.map(|values| values.to_vec().into_pyarray(py));
+        let keywords = PyDict::new(py);
+        COLUMNS[1..].iter().try_for_each(|(name, column)| keywords.set_item(name, array(column(of))))?;
         let recipe = Recipe::new(py, "", (of.times.clone().into_pyarray(py),))?;
         recipe.with_keywords(Some(&keywords))?.reduce(slf.get_type())
     }
@@ -369,26 +350,14 @@ impl Recording {
     }
 
     fn __repr__(&self) -> String {
-        let given = [
-            ("force", &self.0.force),
-            ("deflection", &self.0.deflection),
-            ("drive", &self.0.drive),
-            ("depth", &self.0.depth),
-        ];
-        let names: Vec<&str> = given.into_iter().filter_map(|(name, column)| column.as_ref().map(|_| name)).collect();
+        let given = COLUMNS[1..].iter().filter(|(_, column)| column(&self.0).is_some());
+        let names: Vec<&str> = given.map(|(name, _)| *name).collect();
         format!("Recording({} times, {})", self.0.times.len(), names.join(", "))
     }
 
     /// A column by its name: "time", "force", "deflection", "drive" or "depth"; None without it.
-    fn column<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Option<Bound<'py, PyAny>>> {
-        let names = [("time", 0), ("times", 0), ("force", 1), ("deflection", 2), ("drive", 3), ("depth", 4)];
-        let column = match choice("name", name, &names)? {
-            0 => Some(&self.0.times),
-            1 => self.0.force.as_ref(),
-            2 => self.0.deflection.as_ref(),
-            3 => self.0.drive.as_ref(),
-            _ => self.0.depth.as_ref(),
-        };
+    fn column<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Option<Object<'py>>> {
+        let column = choice("name", if name == "times" { "time" } else { name }, &COLUMNS)?(&self.0);
         Ok(column.map(|column| column.to_vec().into_pyarray(py).into_any()))
     }
 
@@ -404,7 +373,7 @@ impl Recording {
 }
 
 /// The model of a name, or of a pair of name and number of terms or cutoff [s].
-pub fn model(given: &Bound<'_, PyAny>) -> PyResult<id::Model> {
+pub fn model(given: &Object<'_>) -> PyResult<id::Model> {
     if let Ok((name, terms)) = given.extract::<(String, i64)>()
         && name == "prony"
     {

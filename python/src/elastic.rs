@@ -41,10 +41,10 @@ impl ElasticContact {
     fn new(
         py: Python<'_>,
         grid: &Grid,
-        geometry: &Bound<'_, PyAny>,
+        geometry: &Object<'_>,
         modulus: f64,
         kernel: Option<&InfluenceKernel>,
-        options: Option<&Bound<'_, PyDict>>,
+        options: Option<&Dict<'_>>,
     ) -> PyResult<ElasticContact> {
         let shapes = geometries(&grid.0, geometry)?;
         if shapes.is_empty() {
@@ -54,12 +54,9 @@ impl ElasticContact {
         for shape in &shapes {
             builder = builder.another_body(shape);
         }
-        if let Some(kernel) = kernel {
-            builder = builder.kernel(Arc::clone(&kernel.kernel));
-        }
-        if let Some(options) = options {
-            builder = builder.settings(settings(Settings::default(), options)?);
-        }
+        let settings = options.map(|options| settings(Settings::default(), options)).transpose()?;
+        builder = if_given(builder, kernel, |builder, kernel| builder.kernel(Arc::clone(&kernel.kernel)));
+        let builder = if_given(builder, settings, |builder, settings| builder.settings(settings));
         let contact = free(py, || builder.build()).or_raise()?;
         Ok(ElasticContact { contact, cancel: Arc::default() })
     }
@@ -68,21 +65,21 @@ impl ElasticContact {
     /// iteration; a failure leaves the contact as it was.
     ///
     /// Returns the cost and accuracy: "iterations", "convolutions" (transforms in these units), "residual", and the "warnings" as lines.
-    fn solve<'py>(mut slf: Taken<'_, Self>, py: Python<'py>, load: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyDict>> {
+    fn solve<'py>(mut slf: Taken<'_, Self>, py: Python<'py>, load: &Object<'py>) -> PyResult<Dict<'py>> {
         let loads = loads(load)?;
         let ElasticContact { contact, cancel, .. } = &mut *slf;
         let report = interruptible(py, true, cancel, || contact.solve_unless(cancel, &loads))?;
+        let warnings: Vec<String> = report.messages().map(in_python).collect();
         Ok(dict! { py;
-            "iterations": report.iterations,
+            report { iterations, residual },
             "convolutions": report.convolution_equivalents(),
-            "residual": report.residual,
-            "warnings": report.messages().collect::<Vec<_>>(),
+            "warnings": warnings,
         })
     }
 
     /// Displaces the surface before any pressure [m], positive into the bodies: an array of the shape of the grid. The next solution
     /// begins from there.
-    fn set_surface(mut slf: Taken<'_, Self>, displacement: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn set_surface(mut slf: Taken<'_, Self>, displacement: &Object<'_>) -> PyResult<()> {
         let cells = slf.contact.fields().grid().cells();
         let values = field("displacement", displacement, cells)?;
         slf.contact.set_surface(&values).or_raise()
@@ -102,11 +99,7 @@ impl ElasticContact {
 
     fn __repr__(slf: Shared<'_, Self>) -> PyResult<String> {
         let of = slf.shown()?;
-        let [n1, n2] = of.grid().cells();
-        Ok(format!(
-            "ElasticContact({n1} × {n2} cells, force={} N, approach={} m)",
-            digits(of.force()),
-            digits(of.approach())
-        ))
+        let ([n1, n2], [force, approach]) = (of.grid().cells(), [of.force(), of.approach()].map(digits));
+        Ok(format!("ElasticContact({n1} × {n2} cells, force={force} N, approach={approach} m)"))
     }
 }

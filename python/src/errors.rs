@@ -3,6 +3,7 @@
 use std::cell::RefCell;
 use std::error::Error as StdError;
 use std::io;
+use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
 use crate::prelude::*;
@@ -30,6 +31,11 @@ create_exception!(
 /// Raises the errors of both crates, at the end of a call: first what a function of the user raised in it, whether the crate noticed or not.
 pub trait OrRaise<T> {
     fn or_raise(self) -> PyResult<T>;
+}
+
+/// What cannot fail, in a list of what can.
+pub fn sure<T>(value: T) -> viscocontact::Result<T> {
+    Ok(value)
 }
 
 impl<T> OrRaise<T> for Result<T, Error> {
@@ -72,6 +78,14 @@ pub fn raise(error: &Error) -> PyErr {
     }
 }
 
+/// The error of a file that cannot be opened, as the crate says it.
+pub fn unreadable(path: &Path) -> impl FnOnce(io::Error) -> PyErr {
+    move |error| {
+        let (file, reason, kind) = (path.display().to_string(), error.to_string(), Some(error.kind()));
+        raise(&FileError::Unreadable { file, reason, kind }.into())
+    }
+}
+
 /// The OSError of the kind that its number has, with the name of the file, as of `open`.
 fn os_error(error: &Error, text: String) -> PyErr {
     let file = match error {
@@ -104,7 +118,8 @@ fn with_causes(error: &dyn StdError) -> String {
 }
 
 /// What messages of the crates name, and what it is called here.
-const NAMES: [(&str, &str); 15] = [
+const NAMES: [(&str, &str); 16] = [
+    ("share of the glassy modulus", "share of the glassy modulus (moduli are for Rheology.generalized_maxwell)"),
     (
         "name the times to fit one over, with Builder::times (first and last) or Builder::times_of (a load history and its end), or fit one with Rheology::series or Material::fitted",
         "fit one with Material.fitted(first, last), or for a contact in space give times=(first, last) or times=(load, until)",

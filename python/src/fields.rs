@@ -72,33 +72,15 @@ impl Shown for Showing<'_> {
 /// The arrays of a class that has fields.
 macro_rules! arrays {
     ($class:ident) => {
-        #[pymethods]
-        impl $class {
+        getters! {by shown $class, of, py:
             /// Pressure [Pa], of the shape of the grid.
-            #[getter]
-            fn pressure<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Array<'py>> {
-                let of = slf.shown()?;
-                to_array(py, of.pressure().to_vec(), &of.grid().cells())
-            }
-
+            pressure: Array<'py> = to_array(py, of.pressure().to_vec(), &of.grid().cells())?;
             /// Displacement of the surface, positive into the bodies [m], of the shape of the grid.
-            #[getter]
-            fn displacement<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Array<'py>> {
-                let of = slf.shown()?;
-                to_array(py, of.displacement().to_vec(), &of.grid().cells())
-            }
-
+            displacement: Array<'py> = to_array(py, of.displacement().to_vec(), &of.grid().cells())?;
             /// Gap between the deformed bodies [m], of the shape of the grid; +inf where there is nothing to touch.
-            #[getter]
-            fn gap<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Array<'py>> {
-                field(py, slf.shown()?, |of, values| of.gap_into(values))
-            }
-
+            gap: Array<'py> = field(py, of, |of, values| of.gap_into(values))?;
             /// Net traction [Pa]: the pressure less the attraction, of the shape of the grid.
-            #[getter]
-            fn traction<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Array<'py>> {
-                field(py, slf.shown()?, |of, values| of.traction_into(values))
-            }
+            traction: Array<'py> = field(py, of, |of, values| of.traction_into(values))?;
         }
     };
 }
@@ -106,23 +88,11 @@ macro_rules! arrays {
 /// The numbers of a class that has fields.
 macro_rules! of_fields {
     ($class:ident) => {
-        #[pymethods]
-        impl $class {
+        getters! {by shown $class, of, py:
             /// The state of each rigid body.
-            #[getter]
-            fn bodies(slf: Shared<'_, Self>) -> PyResult<Vec<BodyState>> {
-                let of = slf.shown()?;
-                Ok((0..of.bodies()).filter_map(|body| of.body(body)).map(BodyState).collect())
-            }
-
+            bodies: Vec<BodyState> = (0..of.bodies()).filter_map(|body| of.body(body)).map(BodyState).collect();
             /// The load on the first body.
-            #[getter]
-            fn load(slf: Shared<'_, Self>, py: Python<'_>) -> PyResult<Load> {
-                Load::of(py, slf.shown()?.load())
-            }
-        }
-
-        getters! {by shown $class, of:
+            load: Load = Load::of(py, of.load())?;
             /// The grid of every field.
             grid: Grid = Grid(of.grid().clone());
             /// Normal force on all bodies [N].
@@ -166,24 +136,13 @@ fn field<'py>(
     to_array(py, values, &of.grid().cells())
 }
 
-#[pymethods]
-impl ViscoelasticContact {
+getters! {by get ViscoelasticContact, of, py:
     /// How the last step of surfaces that attract each other went: contact problems ("passes"), those given up ("rejected"), the greatest
     /// "rise" of the energy over the sum of its parts, the energy "released" [J], and whether the surfaces "jumped". None without attraction.
-    #[getter]
-    fn passes<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
-        let Some(of) = slf.get()?.passes() else { return Ok(None) };
-        Ok(Some(dict! { py;
-            "passes": of.passes,
-            "rejected": of.rejected,
-            "rise": of.rise,
-            "released": of.released,
-            "jumped": of.jumped,
-        }))
-    }
-}
-
-getters! {by get ViscoelasticContact, of:
+    passes: Option<Dict<'py>> = {
+        let Some(of) = of.passes() else { return Ok(None) };
+        Some(dict! { py; of { passes, rejected, rise, released, jumped } })
+    };
     /// Time [s].
     time: f64 = of.time();
     /// Reduced time of the material [s].

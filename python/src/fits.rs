@@ -28,7 +28,7 @@ impl Estimate {
     }
 
     #[allow(clippy::type_complexity)]
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (Py<Fit>, &str))> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Object<'py>, (Py<Fit>, &str))> {
         Ok((py.get_type::<Fit>().getattr("__getitem__")?, (self.fit.clone_ref(py), &self.of.name)))
     }
 
@@ -74,7 +74,7 @@ pub struct Fit {
 }
 
 /// A fit in a pickle: what makes it again, and the identification, its curves, the one of a list that it was, and the numbers found.
-type Pickled<'py> = (Bound<'py, PyAny>, (Py<Identification>, Vec<Curve>, Option<usize>, State));
+type Pickled<'py> = (Object<'py>, (Py<Identification>, Vec<Curve>, Option<usize>, State));
 type State = (Vec<f64>, Vec<(f64, [f64; 2], Vec<f64>)>, bool, usize, Option<f64>);
 
 #[pymethods]
@@ -99,7 +99,7 @@ impl Fit {
     #[staticmethod]
     fn _again(
         by: Bound<'_, Identification>,
-        curves: &Bound<'_, PyAny>,
+        curves: &Object<'_>,
         of_curve: Option<usize>,
         state: State,
     ) -> PyResult<Fit> {
@@ -135,12 +135,12 @@ impl Fit {
     }
 
     /// The contact modulus E*(t) [Pa] at times after a sudden step [s].
-    fn modulus<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    fn modulus<'py>(&self, t: &Object<'py>) -> PyResult<Object<'py>> {
         mapped("t", t, FROM_ZERO, |t| self.fit.modulus(t), never)
     }
 
     /// The relative standard deviation of `modulus`.
-    fn modulus_deviation<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    fn modulus_deviation<'py>(&self, t: &Object<'py>) -> PyResult<Object<'py>> {
         mapped("t", t, FROM_ZERO, |t| self.fit.modulus_band(t)[1], never)
     }
 
@@ -162,7 +162,7 @@ impl Fit {
 
     /// Force of the fit at each time of a curve [N], and measured less fitted force.
     #[pyo3(signature = (curve=0))]
-    fn force<'py>(&self, py: Python<'py>, curve: usize) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+    fn force<'py>(&self, py: Python<'py>, curve: usize) -> PyResult<(Object<'py>, Object<'py>)> {
         self.check(curve)?;
         let array = |values: &[f64]| values.to_vec().into_pyarray(py).into_any();
         Ok((array(self.fit.force(curve)), array(self.fit.residuals(curve))))
@@ -176,15 +176,11 @@ impl Fit {
 
     /// The decades of time that the curves determine: dicts of "times" [s], "modulus" that relaxes there [Pa], its "deviation" [Pa], and
     /// "is_determined".
-    fn decades<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
+    fn decades<'py>(&self, py: Python<'py>) -> PyResult<Vec<Dict<'py>>> {
         let decades = self.watched(py, id::Fit::decades)?;
         let of = |of: id::Decade| {
-            Ok(dict! { py;
-                "times": (of.times[0], of.times[1]),
-                "modulus": of.modulus,
-                "deviation": of.deviation,
-                "is_determined": of.is_determined,
-            })
+            let times: (f64, f64) = of.times.into();
+            Ok(dict! { py; of { modulus, deviation, is_determined }, "times": times })
         };
         decades.into_iter().map(of).collect()
     }
@@ -203,33 +199,28 @@ impl Fit {
         &self,
         py: Python<'py>,
         grid: &Grid,
-        shape: &Bound<'py, PyAny>,
+        shape: &Object<'py>,
         curve: usize,
-        options: Option<&Bound<'py, PyDict>>,
+        options: Option<&Dict<'py>>,
     ) -> PyResult<(Array<'py>, f64)> {
         let scene = builder(grid, shape, &self.material(py)?, options)?;
         let of = self.watched(py, |fit| fit.verify(curve, &scene))?;
-        let n = of.force.len();
-        Ok((to_array(py, of.force, &[n])?, of.difference))
+        Ok((line(py, of.force)?, of.difference))
     }
 
     /// What the answer depends on: fits of the same curves under another assumption ("drift", "tilt", "correlated noise", "no outliers"):
     /// dicts of the "assumption", "times" [s], the "ratios" of their moduli to those of this fit, and "aicc_difference".
-    fn variants<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
+    fn variants<'py>(&self, py: Python<'py>) -> PyResult<Vec<Dict<'py>>> {
         let of = |of: id::Variant| {
-            Ok(dict! { py;
-                "assumption": of.assumption,
-                "times": of.times.to_vec(),
-                "ratios": of.ratios.to_vec(),
-                "aicc_difference": of.aicc_difference,
-            })
+            let (times, ratios) = (of.times.to_vec(), of.ratios.to_vec());
+            Ok(dict! { py; of { assumption, aicc_difference }, "times": times, "ratios": ratios })
         };
         self.watched(py, |fit| Ok(fit.variants()))?.into_iter().map(of).collect()
     }
 
     /// The fit of a curve at each of its times, as arrays: "time" [s], "force" [N], "depth" and "contact_depth" [m].
     #[pyo3(signature = (curve=0))]
-    fn samples<'py>(&self, py: Python<'py>, curve: usize) -> PyResult<Bound<'py, PyDict>> {
+    fn samples<'py>(&self, py: Python<'py>, curve: usize) -> PyResult<Dict<'py>> {
         self.check(curve)?;
         let samples = self.fit.samples(curve);
         let column = |of: fn(&id::Sample) -> f64| samples.iter().map(of).collect::<Vec<_>>().into_pyarray(py);

@@ -5,7 +5,6 @@ use std::time::Duration;
 use numpy::{PyArray2, PyArrayMethods};
 use pyo3::create_exception;
 use viscocontact::friction as vf;
-use viscocontact::{self as vc};
 
 use crate::contact::timed;
 use crate::errors::no_exception;
@@ -38,22 +37,15 @@ pub fn slides(message: String, over_limit: f64, direction: Option<[f64; 3]>) -> 
     })
 }
 
-/// What a surface can carry along itself: |τ| ≤ r(p).
-///
-/// >>> FrictionLimit.coulomb(0.6).limit(1e5)
-/// 60000.0
-/// >>> FrictionLimit.lesser(FrictionLimit.coulomb(0.6), FrictionLimit.tresca(2e4)).limit(1e5)
-/// 20000.0
-#[pyclass(frozen, module = "viscocontact")]
-pub struct FrictionLimit {
-    limit: Limit,
-    recipe: Recipe,
-}
-
-impl FrictionLimit {
-    fn by(recipe: Recipe, limit: impl vf::FrictionLimit + 'static) -> FrictionLimit {
-        FrictionLimit { limit: Limit(Arc::new(limit)), recipe }
-    }
+made! {
+    /// What a surface can carry along itself: |τ| ≤ r(p).
+    ///
+    /// >>> FrictionLimit.coulomb(0.6).limit(1e5)
+    /// 60000.0
+    /// >>> FrictionLimit.lesser(FrictionLimit.coulomb(0.6), FrictionLimit.tresca(2e4)).limit(1e5)
+    /// 20000.0
+    #[pyclass(frozen, module = "viscocontact")]
+    FrictionLimit(limit: Limit) of impl vf::FrictionLimit + 'static => |limit| Limit(Arc::new(limit))
 }
 
 /// A limit of any kind.
@@ -90,7 +82,7 @@ makers! {FrictionLimit, py:
 
     /// The lesser of two limits.
     lesser(one: Bound<'_, FrictionLimit>, other: Bound<'_, FrictionLimit>) =
-        Ok::<_, vc::Error>(vf::Lesser(one.get().limit.clone(), other.get().limit.clone()));
+        sure(vf::Lesser(one.get().limit.clone(), other.get().limit.clone()));
 }
 
 #[pymethods]
@@ -111,27 +103,24 @@ impl FrictionLimit {
     }
 }
 
-made_by_calls!(FrictionLimit);
-
-/// What acts on a body along the surface at the end of a step.
-///
-/// Parameters
-/// ----------
-/// force : pair of float or None, optional
-///     Forces along x1 and x2 [N].
-/// motion : pair of float or None, optional
-///     Displacements of the body along x1 and x2 since the contact was made [m]. Each axis has a force or a motion, and None in the other pair.
-/// torque : float, optional
-///     About the normal through the origin, from x1 to x2 [N m].
-/// angle : float, default 0
-///     By which the body has turned [rad]; without `torque`.
-///
-/// >>> pulled = ShearLoad((0.3, 0.0))                            # along x1; it does not turn
-/// >>> moved = ShearLoad((0.0, None), (None, 2e-6), torque=0.0)  # along x2, free along x1 and to turn
-#[pyclass(frozen, module = "viscocontact")]
-pub struct ShearLoad {
-    load: vf::ShearLoad,
-    recipe: Recipe,
+made! {
+    /// What acts on a body along the surface at the end of a step.
+    ///
+    /// Parameters
+    /// ----------
+    /// force : pair of float or None, optional
+    ///     Forces along x1 and x2 [N].
+    /// motion : pair of float or None, optional
+    ///     Displacements of the body along x1 and x2 since the contact was made [m]. Each axis has a force or a motion, and None in the other pair.
+    /// torque : float, optional
+    ///     About the normal through the origin, from x1 to x2 [N m].
+    /// angle : float, default 0
+    ///     By which the body has turned [rad]; without `torque`.
+    ///
+    /// >>> pulled = ShearLoad((0.3, 0.0))                            # along x1; it does not turn
+    /// >>> moved = ShearLoad((0.0, None), (None, 2e-6), torque=0.0)  # along x2, free along x1 and to turn
+    #[pyclass(frozen, module = "viscocontact")]
+    ShearLoad(load: vf::ShearLoad)
 }
 
 #[pymethods]
@@ -152,13 +141,10 @@ impl ShearLoad {
             component("torque and angle", twist)?,
         ];
         let pairs = (force.map(<(_, _)>::from), motion.map(<(_, _)>::from));
-        let recipe =
-            Recipe::new(py, "", pairs)?.with_keywords(Some(&dict! { py; "torque": torque, "angle": angle }))?;
-        Ok(ShearLoad { load: vf::ShearLoad { components }, recipe })
+        let keywords = dict! { py; "torque": torque, "angle": angle };
+        Ok(ShearLoad::by(Recipe::new(py, "", pairs)?.with_keywords(Some(&keywords))?, vf::ShearLoad { components }))
     }
 }
-
-made_by_calls!(ShearLoad);
 
 /// A contact that is pressed as a `ViscoelasticContact` is, and sheared: each cell sticks, or slips at the limit of friction.
 ///
@@ -185,7 +171,7 @@ made_by_calls!(ShearLoad);
 /// >>> contact.step(0.0, Load.force(1.0), ShearLoad((0.6, 0.0)))
 /// Traceback (most recent call last):
 /// Slides: ...
-/// >>> round(contact.force[0], 8)    # as it was before
+/// >>> round(contact.lateral_force[0], 8)    # as it was before
 /// 0.3
 #[pyclass(module = "viscocontact")]
 pub struct FrictionContact {
@@ -332,8 +318,12 @@ getters! {by get FrictionContact, of:
     time: f64 = of.normal().time();
     /// How far the body has moved along x1 and x2 [m] and turned [rad].
     motion: (f64, f64, f64) = of.motion().into();
-    /// Forces along x1 and x2 [N] and torque [N m] on the body.
-    force: (f64, f64, f64) = of.force().into();
+    /// Normal force [N].
+    force: f64 = of.normal().force();
+    /// Force along x1 and x2 [N] that moves the body.
+    lateral_force: (f64, f64) = (of.force()[0], of.force()[1]);
+    /// Torque about the normal [N m] that turns it.
+    torque: f64 = of.force()[2];
     /// Cells that stick.
     stick_cells: usize = of.stick_cells();
 }

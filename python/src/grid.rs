@@ -22,7 +22,7 @@ impl FromPyObject<'_, '_> for Count {
 }
 
 /// The same of an argument with a default.
-pub fn count(given: &Bound<'_, PyAny>) -> PyResult<usize> {
+pub fn count(given: &Object<'_>) -> PyResult<usize> {
     given.extract::<Count>().map(|count| count.0)
 }
 
@@ -80,7 +80,8 @@ impl Grid {
     }
 
     fn __repr__(&self) -> String {
-        format!("Grid({:?}, {:?})", self.shape(), self.lengths())
+        let (cells, lengths) = self.__getnewargs__();
+        format!("Grid({cells:?}, {lengths:?})")
     }
 
     fn __hash__(&self, py: Python<'_>) -> PyResult<isize> {
@@ -88,7 +89,7 @@ impl Grid {
     }
 
     fn __getnewargs__(&self) -> ((usize, usize), (f64, f64)) {
-        (self.shape(), self.lengths())
+        (self.0.cells().into(), self.0.lengths().into())
     }
 }
 

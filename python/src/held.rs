@@ -10,30 +10,23 @@ use viscocontact::rheology::{Elastic, Material};
 use viscocontact::run::{self as vr, Contact, Crossing, Stepping};
 use viscocontact::states::{ElasticStates, StatesContact as InStates};
 
-/// Times at which steps end or states are sampled, counted from the start of a run.
-///
-/// A sequence of times [s] does as well. `+` joins them.
-///
-/// >>> Times.every(0.1) + Times.decades(1e-6, 10)
-/// Times.every(0.1) + Times.decades(1e-06, 10)
-#[pyclass(frozen, module = "viscocontact")]
-pub struct Times {
-    times: vr::Times,
-    recipe: Recipe,
-}
-
-impl Times {
-    fn by(recipe: Recipe, times: vr::Times) -> Times {
-        Times { times, recipe }
-    }
+made! {
+    /// Times at which steps end or states are sampled, counted from the start of a run.
+    ///
+    /// A sequence of times [s] does as well. `+` joins them.
+    ///
+    /// >>> Times.every(0.1) + Times.decades(1e-6, 10)
+    /// Times.every(0.1) + Times.decades(1e-06, 10)
+    #[pyclass(frozen, module = "viscocontact")]
+    Times(times: vr::Times)
 }
 
 makers! {Times, py:
     /// The multiples of an `interval` [s].
-    every(interval: f64) = Ok::<_, vc::Error>(vr::Times::every(interval));
+    every(interval: f64) = sure(vr::Times::every(interval));
 
     /// The time `first` [s], and so many in each decade beyond.
-    decades(first: f64, per_decade: Count) = Ok::<_, vc::Error>(vr::Times::decades(first, per_decade.0));
+    decades(first: f64, per_decade: Count) = sure(vr::Times::decades(first, per_decade.0));
 }
 
 #[pymethods]
@@ -48,9 +41,7 @@ impl Times {
     }
 }
 
-made_by_calls!(Times);
-
-pub fn times(name: &str, given: Option<Bound<'_, PyAny>>) -> PyResult<Option<vr::Times>> {
+pub fn times(name: &str, given: Option<Object<'_>>) -> PyResult<Option<vr::Times>> {
     let Some(given) = given else { return Ok(None) };
     match given.cast::<Times>() {
         Ok(times) => Ok(Some(times.get().times.clone())),
@@ -204,11 +195,7 @@ impl<C: Led> Held<C> {
     pub fn follow(&mut self, options: Options, load: Py<PyAny>, cancel: Arc<AtomicBool>) -> PyResult<u64> {
         options.check().or_raise()?;
         let (bodies, given) = (self.free()?.in_space().map_or(1, |fields| fields.bodies()), options.histories.len());
-        if given != bodies {
-            return Err(PyValueError::new_err(format!(
-                "load: {given} histories given, {bodies} needed, one for each body"
-            )));
-        }
+        one_for_each("body", "load", given, bodies)?;
         let Held::Free(contact) = std::mem::replace(self, Held::Lost) else { return Err(lost()) };
         let number = NEXT.fetch_add(1, Ordering::Relaxed);
         let run = contact.along(&options).or_raise()?.cancelled_by(cancel);

@@ -10,7 +10,7 @@ use crate::fits::Fit;
 use crate::prelude::*;
 
 /// What is known of a property of each curve: one for all, or a list with one for each.
-fn per_curve(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Option<id::PerCurve>> {
+fn per_curve(name: &str, given: &Object<'_>) -> PyResult<Option<id::PerCurve>> {
     match given.cast::<pyo3::types::PyList>() {
         Ok(each) => {
             let each = each.iter().map(|known| Ok(nuisance(name, &known)?.unwrap_or(id::Nuisance::Fixed(0.0))));
@@ -21,7 +21,7 @@ fn per_curve(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Option<id::PerCur
 }
 
 /// What is known of a property of the measurement: None (fixed at 0 by default), a number (fixed), True (fitted), or ("from", start).
-fn nuisance(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Option<id::Nuisance>> {
+fn nuisance(name: &str, given: &Object<'_>) -> PyResult<Option<id::Nuisance>> {
     if given.is_none() {
         return Ok(None);
     }
@@ -39,17 +39,26 @@ fn nuisance(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Option<id::Nuisanc
     }
 }
 
+/// A property of the measurement, by name.
+type OfCurves = (&'static str, fn(id::Identification, id::PerCurve) -> id::Identification);
+
+const OF_CURVES: [OfCurves; 6] = [
+    ("contact_point", id::Identification::contact_point),
+    ("offset", id::Identification::offset),
+    ("drift", id::Identification::drift),
+    ("tilt", id::Identification::tilt),
+    ("drag", id::Identification::drag),
+    ("stiffness", id::Identification::stiffness),
+];
+
 const OPTIONS: &str = "contact_point offset drift tilt drag stiffness noise known_sigma robust fix start";
 
 /// The identification with an option of this name.
-fn option(of: id::Identification, name: &str, given: &Bound<'_, PyAny>) -> PyResult<id::Identification> {
-    let known = || per_curve(name, given);
-    let set = |set: fn(id::Identification, id::PerCurve) -> id::Identification, of: id::Identification| {
-        Ok::<_, PyErr>(match known()? {
-            Some(known) => set(of, known),
-            None => of,
-        })
-    };
+fn option(of: id::Identification, name: &str, given: &Object<'_>) -> PyResult<id::Identification> {
+    let mut curves = OF_CURVES.iter();
+    if let Some((_, set)) = curves.find(|(own, _)| *own == name) {
+        return Ok(if_given(of, per_curve(name, given)?, set));
+    }
     let names = of.model().parameters();
     let each = |of: id::Identification, give: fn(id::Identification, &str, f64) -> id::Identification| {
         named(given.cast()?)?.into_iter().try_fold(of, |of, (name, value)| match names.contains(&name) {
@@ -58,12 +67,6 @@ fn option(of: id::Identification, name: &str, given: &Bound<'_, PyAny>) -> PyRes
         })
     };
     match name {
-        "contact_point" => set(id::Identification::contact_point, of),
-        "offset" => set(id::Identification::offset, of),
-        "drift" => set(id::Identification::drift, of),
-        "tilt" => set(id::Identification::tilt, of),
-        "drag" => set(id::Identification::drag, of),
-        "stiffness" => set(id::Identification::stiffness, of),
         "noise" => Ok(of.noise(match (given.extract::<f64>(), given.extract::<&str>()) {
             (Ok(coefficient), _) => id::Noise::AutoregressiveWith(coefficient),
             (_, Ok("white")) => id::Noise::White,
@@ -78,34 +81,33 @@ fn option(of: id::Identification, name: &str, given: &Bound<'_, PyAny>) -> PyRes
     }
 }
 
-/// A model of the material, and what is known of the measurement: fits curves, and gives bounds before an experiment.
-///
-/// Parameters
-/// ----------
-/// model : "elastic", "maxwell", "zener", ("prony", n), ("power_law", cutoff [s]), ("power_law_solid", cutoff [s]), "stretched" or "fractional_zener"
-/// contact_point, offset, drift, tilt, drag, stiffness : float (known), True (fitted), or ("from", start)
-///     Drive at first touch [m], force without contact [N], its growth in time [N/s] and with the drive [N/m], force over the speed of the
-///     drive [N s/m], and the stiffness of the spring [N/m] in place of that of the experiments. A list has one for each curve.
-/// noise : "white" (default), "autoregressive", or the coefficient of an autoregressive noise
-/// known_sigma : float, optional
-///     Standard deviation of the noise [N].
-/// robust : bool
-///     Whether outliers lose their weight.
-/// fix, start : dict
-///     Parameters of the material that are known, and where the search for others starts.
-///
-/// >>> import numpy as np
-/// >>> tip = ElasticStates.sphere(5e-6)
-/// >>> experiment = Experiment.trapezoid(1e-6, (1.0, 3.0, 1.0), 0.01, tip)
-/// >>> zener = Identification("zener")
-/// >>> force, depth = zener.respond(experiment, {"E0": 4000.0, "Einf": 2000.0, "tau": 0.5})
-/// >>> fit = zener.fit(Curve(experiment, force + 1e-11 * np.random.default_rng(0).normal(size=len(force))))
-/// >>> abs(fit["tau"].value / 0.5 - 1) < 0.01
-/// True
-#[pyclass(frozen, module = "viscocontact")]
-pub struct Identification {
-    pub of: id::Identification,
-    recipe: Recipe,
+made! {
+    /// A model of the material, and what is known of the measurement: fits curves, and gives bounds before an experiment.
+    ///
+    /// Parameters
+    /// ----------
+    /// model : "elastic", "maxwell", "zener", ("prony", n), ("power_law", cutoff [s]), ("power_law_solid", cutoff [s]), "stretched" or "fractional_zener"
+    /// contact_point, offset, drift, tilt, drag, stiffness : float (known), True (fitted), or ("from", start)
+    ///     Drive at first touch [m], force without contact [N], its growth in time [N/s] and with the drive [N/m], force over the speed of the
+    ///     drive [N s/m], and the stiffness of the spring [N/m] in place of that of the experiments. A list has one for each curve.
+    /// noise : "white" (default), "autoregressive", or the coefficient of an autoregressive noise
+    /// known_sigma : float, optional
+    ///     Standard deviation of the noise [N].
+    /// robust : bool
+    ///     Whether outliers lose their weight.
+    /// fix, start : dict
+    ///     Parameters of the material that are known, and where the search for others starts.
+    ///
+    /// >>> import numpy as np
+    /// >>> tip = ElasticStates.sphere(5e-6)
+    /// >>> experiment = Experiment.trapezoid(1e-6, (1.0, 3.0, 1.0), 0.01, tip)
+    /// >>> zener = Identification("zener")
+    /// >>> force, depth = zener.respond(experiment, {"E0": 4000.0, "Einf": 2000.0, "tau": 0.5})
+    /// >>> fit = zener.fit(Curve(experiment, force + 1e-11 * np.random.default_rng(0).normal(size=len(force))))
+    /// >>> abs(fit["tau"].value / 0.5 - 1) < 0.01
+    /// True
+    #[pyclass(frozen, module = "viscocontact")]
+    Identification(pub of: id::Identification)
 }
 
 #[pymethods]
@@ -119,8 +121,7 @@ impl Identification {
         let options =
             options.map_or_else(|| Ok(PyDict::new(py)), |given| Ok::<_, PyErr>(given.0.cast_into::<PyDict>()?))?;
         let mut of = id::Identification::new(self::model(&model)?);
-        let twice =
-            |name: Bound<'_, PyAny>| PyTypeError::new_err(format!("give {name} in fix or in start, not in both"));
+        let twice = |name: Object<'_>| PyTypeError::new_err(format!("give {name} in fix or in start, not in both"));
         if let (Ok(Some(fix)), Ok(Some(start))) = (options.get_item("fix"), options.get_item("start")) {
             let both = fix.try_iter()?.flatten().find(|name| start.contains(name).unwrap_or(false));
             both.map_or(Ok(()), |name| Err(twice(name)))?;
@@ -131,7 +132,7 @@ impl Identification {
             }
         }
         of.check().or_raise()?;
-        Ok(Identification { of, recipe: Recipe::new(py, "", (model,))?.with_keywords(Some(&options))? })
+        Ok(Identification::by(Recipe::new(py, "", (model,))?.with_keywords(Some(&options))?, of))
     }
 
     /// Fits a curve, or several of one material together.
@@ -141,7 +142,7 @@ impl Identification {
     ///
     /// Raises ValueError if the curves do not suit, ConvergenceError if the search does not converge.
     #[pyo3(signature = (curves, *, progress=None))]
-    fn fit(slf: Bound<'_, Self>, curves: &Bound<'_, PyAny>, progress: Option<Function>) -> PyResult<Fit> {
+    fn fit(slf: Bound<'_, Self>, curves: &Object<'_>, progress: Option<Function>) -> PyResult<Fit> {
         let (curves, tips) = several(curves)?;
         let of = slf.get().of.clone();
         let fit = watched(slf.py(), progress, |watch| of.watched(watch).fit(&curves))?;
@@ -153,11 +154,7 @@ impl Identification {
     /// `progress` is called after each fit with the part that is done; where it returns False, the others are not fitted: `Cancelled` is in their
     /// place. Ctrl-C ends the call.
     #[pyo3(signature = (curves, *, progress=None))]
-    fn fit_each(
-        slf: Bound<'_, Self>,
-        curves: &Bound<'_, PyAny>,
-        progress: Option<Function>,
-    ) -> PyResult<Vec<Py<PyAny>>> {
+    fn fit_each(slf: Bound<'_, Self>, curves: &Object<'_>, progress: Option<Function>) -> PyResult<Vec<Py<PyAny>>> {
         let (py, (curves, tips)) = (slf.py(), several(curves)?);
         let (done, total) = (AtomicUsize::new(0), curves.len() as f64);
         let (ended, kept) = (Arc::new(AtomicBool::new(false)), Kept::default());
@@ -188,14 +185,13 @@ impl Identification {
         &self,
         py: Python<'py>,
         experiment: &Experiment,
-        values: &Bound<'py, PyDict>,
+        values: &Dict<'py>,
     ) -> PyResult<(Array<'py>, Array<'py>)> {
         let named = named(values)?;
         let named: Vec<(&str, f64)> = named.iter().map(|(name, value)| (&**name, *value)).collect();
         let samples = free(py, || self.of.respond(&experiment.of, &named)).or_raise()?;
-        let n = [samples.len()];
         let (force, depth) = samples.iter().map(|sample| (sample.force, sample.depth)).unzip();
-        Ok((to_array(py, force, &n)?, to_array(py, depth, &n)?))
+        Ok((line(py, force)?, line(py, depth)?))
     }
 
     /// The least standard deviations that any unbiased estimate from experiments can have, by parameter: relative for moduli, times and
@@ -204,7 +200,7 @@ impl Identification {
         &self,
         py: Python<'_>,
         experiments: Vec<Bound<'_, Experiment>>,
-        values: &Bound<'_, PyDict>,
+        values: &Dict<'_>,
         sigma: f64,
     ) -> PyResult<std::collections::BTreeMap<String, f64>> {
         let named = named(values)?;
@@ -215,8 +211,6 @@ impl Identification {
         Ok(bounds.names.iter().filter_map(|name| Some((name.clone(), bounds.deviation(name)?))).collect())
     }
 }
-
-made_by_calls!(Identification);
 
 getters! {Identification.of, of:
     /// Names of the parameters of the model.
@@ -234,7 +228,7 @@ getters! {Identification.of, of:
 /// >>> ranked(fits)[0][0].model
 /// 'Maxwell'
 #[pyfunction]
-pub fn ranked(fits: Vec<Bound<'_, PyAny>>) -> PyResult<Vec<(Bound<'_, Fit>, f64, f64)>> {
+pub fn ranked(fits: Vec<Object<'_>>) -> PyResult<Vec<(Bound<'_, Fit>, f64, f64)>> {
     let fits: Vec<Bound<'_, Fit>> = fits.into_iter().filter_map(|fit| fit.cast_into::<Fit>().ok()).collect();
     let ranked = id::ranked(fits.iter().map(|fit| Ok(fit.get().fit.clone()))).or_raise()?;
     let place = |(fit, difference, weight): (id::Fit, f64, f64)| {
@@ -247,7 +241,7 @@ pub fn ranked(fits: Vec<Bound<'_, PyAny>>) -> PyResult<Vec<(Bound<'_, Fit>, f64,
 type Several = (Vec<id::Curve>, Vec<Py<ElasticStates>>);
 
 /// The curves of the crate, and their tips.
-pub fn several(curves: &Bound<'_, PyAny>) -> PyResult<Several> {
+pub fn several(curves: &Object<'_>) -> PyResult<Several> {
     let own = |curve: &Bound<'_, Curve>| (curve.get().of.clone(), curve.get().tip.clone_ref(curve.py()));
     if let Ok(curve) = curves.cast::<Curve>() {
         return Ok([own(curve)].into_iter().unzip());
@@ -290,6 +284,6 @@ pub fn watched<T: Send>(
     }
 }
 
-fn named(values: &Bound<'_, PyDict>) -> PyResult<Vec<(String, f64)>> {
+fn named(values: &Dict<'_>) -> PyResult<Vec<(String, f64)>> {
     values.iter().map(|(name, value)| Ok((name.extract()?, value.extract()?))).collect()
 }

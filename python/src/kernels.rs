@@ -14,20 +14,13 @@ pub fn axis(index: usize) -> PyResult<Axis> {
         .ok_or_else(|| PyValueError::new_err(format!("axis = {index} is not allowed: it must be 0 (x1) or 1 (x2)")))
 }
 
-/// A layer on a base.
-///
-/// >>> Layer.bonded_to_rigid(1e-3, 0.5).thickness
-/// 0.001
-#[pyclass(frozen, module = "viscocontact")]
-pub struct Layer {
-    layer: vc::Layer,
-    recipe: Recipe,
-}
-
-impl Layer {
-    fn by(recipe: Recipe, layer: vc::Layer) -> Layer {
-        Layer { layer, recipe }
-    }
+made! {
+    /// A layer on a base.
+    ///
+    /// >>> Layer.bonded_to_rigid(1e-3, 0.5).thickness
+    /// 0.001
+    #[pyclass(frozen, module = "viscocontact")]
+    Layer(layer: vc::Layer)
 }
 
 makers! {Layer, py:
@@ -53,96 +46,82 @@ getters! {Layer.layer, of:
     nu: f64 = of.poisson_ratio();
 }
 
-made_by_calls!(Layer);
-
-/// The influence operator K of a grid: the surface displacement under a pressure, over the compliance. Contacts share it.
-///
-/// Without one a contact is on a half-space.
-///
-/// >>> import numpy as np
-/// >>> grid = Grid(16, 1e-3)
-/// >>> bodies = InfluenceKernel.periodic(grid)
-/// >>> float(abs(bodies.convolve(np.ones((16, 16)))).max()) < 1e-15    # the mean of periodic bodies is their datum
-/// True
-#[pyclass(frozen, module = "viscocontact")]
-pub struct InfluenceKernel {
-    pub kernel: Arc<vc::InfluenceKernel>,
-    recipe: Recipe,
+made! {
+    /// The influence operator K of a grid: the surface displacement under a pressure, over the compliance. Contacts share it.
+    ///
+    /// Without one a contact is on a half-space.
+    ///
+    /// >>> import numpy as np
+    /// >>> grid = Grid(16, 1e-3)
+    /// >>> bodies = InfluenceKernel.periodic(grid)
+    /// >>> float(abs(bodies.convolve(np.ones((16, 16)))).max()) < 1e-15    # the mean of periodic bodies is their datum
+    /// True
+    #[pyclass(frozen, module = "viscocontact")]
+    InfluenceKernel(pub kernel: Arc<vc::InfluenceKernel>) of vc::InfluenceKernel => Arc::new
 }
 
-impl InfluenceKernel {
-    fn by(recipe: Recipe, kernel: vc::InfluenceKernel) -> InfluenceKernel {
-        InfluenceKernel { kernel: Arc::new(kernel), recipe }
-    }
+/// What is made on a grid, without the GIL.
+fn on<T: Send>(grid: &Bound<'_, Grid>, make: impl FnOnce(&vc::Grid) -> T + Send) -> T {
+    let (py, grid) = (grid.py(), &grid.get().0);
+    free(py, || make(grid))
 }
 
 makers! {InfluenceKernel, py:
     /// A half-space, by Love's coefficients.
-    half_space(grid: Bound<'_, Grid>) = {
-        let on = &grid.get().0;
-        free(py, || vc::InfluenceKernel::half_space(on))
-    };
+    half_space(grid: Bound<'_, Grid>) = on(&grid, vc::InfluenceKernel::half_space);
 
     /// A half-space that is periodic along both axes, the grid being one period.
-    periodic(grid: Bound<'_, Grid>) = {
-        let on = &grid.get().0;
-        free(py, || vc::InfluenceKernel::periodic(on))
-    };
+    periodic(grid: Bound<'_, Grid>) = on(&grid, vc::InfluenceKernel::periodic);
 
     /// A half-space that is periodic along one axis (0 or 1); displacements are measured from the surface at the distance `datum` [m].
     periodic_along(grid: Bound<'_, Grid>, along: usize, datum: f64) = {
-        let (on, axis) = (&grid.get().0, axis(along)?);
-        free(py, || vc::InfluenceKernel::periodic_along(on, axis, datum))
+        let axis = axis(along)?;
+        on(&grid, |grid| vc::InfluenceKernel::periodic_along(grid, axis, datum))
     };
 
     /// A line contact in plane strain, on a grid of n × 1 cells; displacements are measured from the surface at the distance `datum` [m].
-    line(grid: Bound<'_, Grid>, datum: f64) = {
-        let on = &grid.get().0;
-        free(py, || vc::InfluenceKernel::line(on, datum))
-    };
+    line(grid: Bound<'_, Grid>, datum: f64) = on(&grid, |grid| vc::InfluenceKernel::line(grid, datum));
 
     /// A layer, loaded on the grid alone.
     layer(grid: Bound<'_, Grid>, layer: Bound<'_, Layer>) = {
-        let (on, of) = (&grid.get().0, layer.get().layer);
-        free(py, || vc::InfluenceKernel::layer(on, of))
+        let of = layer.get().layer;
+        on(&grid, |grid| vc::InfluenceKernel::layer(grid, of))
     };
 
     /// A layer that is periodic along both axes.
     layer_periodic(grid: Bound<'_, Grid>, layer: Bound<'_, Layer>) = {
-        let (on, of) = (&grid.get().0, layer.get().layer);
-        free(py, || vc::InfluenceKernel::layer_periodic(on, of))
+        let of = layer.get().layer;
+        on(&grid, |grid| vc::InfluenceKernel::layer_periodic(grid, of))
     };
 
     /// A layer in line contact, on a grid of n × 1 cells; on a half-space, with a `datum` [m].
     #[pyo3(signature = (grid, layer, datum=None))]
     layer_line(grid: Bound<'_, Grid>, layer: Bound<'_, Layer>, datum: Option<f64>) = {
-        let (on, of) = (&grid.get().0, layer.get().layer);
-        free(py, || vc::InfluenceKernel::layer_line(on, of, datum))
+        let of = layer.get().layer;
+        on(&grid, |grid| vc::InfluenceKernel::layer_line(grid, of, datum))
     };
 
     /// A layer that is periodic along one axis (0 or 1).
     #[pyo3(signature = (grid, layer, along, datum=None))]
     layer_periodic_along(grid: Bound<'_, Grid>, layer: Bound<'_, Layer>, along: usize, datum: Option<f64>) = {
-        let (on, of, axis) = (&grid.get().0, layer.get().layer, axis(along)?);
-        free(py, || vc::InfluenceKernel::layer_periodic_along(on, of, axis, datum))
+        let (of, axis) = (layer.get().layer, axis(along)?);
+        on(&grid, |grid| vc::InfluenceKernel::layer_periodic_along(grid, of, axis, datum))
     };
 
     /// Your own body: `coefficient(i, j)` [m] is the displacement, over the compliance, of a cell under a unit pressure on the cell
     /// that is i and j cells away.
     from_coefficients(grid: Bound<'_, Grid>, coefficient: Function) = {
-        let (on, kept) = (&grid.get().0, Kept::default());
+        let kept = Kept::default();
         let call = |i: isize, j: isize| kept.number(coefficient.call((i, j)), f64::NAN);
-        let kernel = free(py, || vc::InfluenceKernel::from_coefficients(on, call));
-        kept.raise_or(Ok(kernel))?
+        kept.raise_or(Ok(on(&grid, |grid| vc::InfluenceKernel::from_coefficients(grid, call))))?
     };
 
     /// Your own body, periodic along both axes: `compliance(q1, q2)` [m] is the displacement, over the compliance, under a wave of unit
     /// pressure of these wave numbers [rad/m].
     from_spectrum(grid: Bound<'_, Grid>, compliance: Function) = {
-        let (on, kept) = (&grid.get().0, Kept::default());
+        let kept = Kept::default();
         let call = |q1: f64, q2: f64| kept.number(compliance.call((q1, q2)), f64::NAN);
-        let kernel = free(py, || vc::InfluenceKernel::from_spectrum(on, call));
-        kept.raise_or(Ok(kernel))?
+        kept.raise_or(Ok(on(&grid, |grid| vc::InfluenceKernel::from_spectrum(grid, call))))?
     };
 }
 
@@ -153,19 +132,13 @@ impl InfluenceKernel {
     /// With `out`, an array of float64 of the shape of the grid, into it: no array is made.
     /// Raises ValueError if the shape is another, a value is NaN, or `out` is read-only or not contiguous in C order.
     #[pyo3(signature = (pressure, out=None))]
-    fn convolve<'py>(
-        &self,
-        py: Python<'py>,
-        pressure: &Bound<'py, PyAny>,
-        out: Option<Bound<'py, PyAny>>,
-    ) -> PyResult<Array<'py>> {
+    fn convolve<'py>(&self, py: Python<'py>, pressure: &Object<'py>, out: Option<Object<'py>>) -> PyResult<Array<'py>> {
         let cells = self.kernel.grid().cells();
         let pressure = field("pressure", pressure, cells)?;
+        let kernel = &self.kernel;
         let convolve = |values: &mut [f64]| {
-            let result = free(py, || {
-                self.kernel.workspace().and_then(|mut work| self.kernel.convolve(&pressure, values, &mut work))
-            });
-            result.or_raise()
+            free(py, || kernel.workspace().and_then(|mut work| kernel.convolve(&pressure, values, &mut work)))
+                .or_raise()
         };
         let Some(out) = out else {
             let mut values = vec![0.0; pressure.len()];
@@ -175,15 +148,9 @@ impl InfluenceKernel {
         let needed = |what: String| PyValueError::new_err(format!("out: {what}"));
         let array =
             out.cast::<PyArrayDyn<f64>>().map_err(|_| PyTypeError::new_err("out: an array of float64 is needed"))?;
-        if *array.shape() != cells {
-            return Err(needed(format!(
-                "the shape {cells:?} of the grid is needed, the array has {:?}",
-                array.shape()
-            )));
-        }
         // a slice of NumPy is one of Fortran's order, too
-        if !array.is_c_contiguous() {
-            return Err(needed("a contiguous array in C order is needed".to_owned()));
+        if *array.shape() != cells || !array.is_c_contiguous() {
+            return Err(needed(format!("a contiguous array in C order of the shape {cells:?} of the grid is needed")));
         }
         let mut writable = array.try_readwrite().map_err(|error| needed(error.to_string()))?;
         convolve(writable.as_slice_mut().map_err(|error| needed(error.to_string()))?)?;
@@ -201,5 +168,3 @@ getters! {InfluenceKernel.kernel, of:
     /// The grid.
     grid: Grid = Grid(of.grid().clone());
 }
-
-made_by_calls!(InfluenceKernel);

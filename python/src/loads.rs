@@ -3,14 +3,13 @@
 use crate::prelude::*;
 use viscocontact::load::{self as ld, LoadHistory as History};
 
-/// The load on a rigid body at the end of a step: a force, an approach, or a spring that drives it.
-///
-/// >>> Load.force(1.0), Load.approach(1e-6), Load.spring(10.0, 2e-6)
-/// (Load.force(1.0), Load.approach(1e-06), Load.spring(10.0, 2e-06))
-#[pyclass(frozen, module = "viscocontact")]
-pub struct Load {
-    pub load: ld::Load,
-    recipe: Recipe,
+made! {
+    /// The load on a rigid body at the end of a step: a force, an approach, or a spring that drives it.
+    ///
+    /// >>> Load.force(1.0), Load.approach(1e-6), Load.spring(10.0, 2e-6)
+    /// (Load.force(1.0), Load.approach(1e-06), Load.spring(10.0, 2e-06))
+    #[pyclass(frozen, module = "viscocontact")]
+    Load(pub load: ld::Load)
 }
 
 /// A number for each axis; None where another property of the axis is given.
@@ -44,7 +43,7 @@ impl Load {
         if fixed.iter().flatten().any(|angle| *angle != 0.0) {
             keywords.set_item("tilt", PyTuple::new(py, fixed)?)?;
         }
-        Ok(Load { load, recipe: recipe.with_keywords(Some(&keywords))? })
+        Ok(Load::by(recipe.with_keywords(Some(&keywords))?, load))
     }
 }
 
@@ -76,30 +75,21 @@ impl Load {
     }
 }
 
-made_by_calls!(Load);
-
-/// A load for every time [s].
-///
-/// Wherever a history is needed, a `Load` (held from t = 0 on), a sequence of (time, load) joined by straight lines, and a function of
-/// time that returns a `Load` do as well.
-///
-/// >>> ramp = LoadHistory.ramp(Load.force(0), Load.force(2), 1.0)
-/// >>> ramp.at(0.25)
-/// Load.force(0.5)
-#[pyclass(frozen, module = "viscocontact")]
-pub struct LoadHistory {
-    pub history: Arc<dyn History>,
-    recipe: Recipe,
-}
-
-impl LoadHistory {
-    fn by(recipe: Recipe, history: impl History + 'static) -> LoadHistory {
-        LoadHistory { history: Arc::new(history), recipe }
-    }
+made! {
+    /// A load for every time [s].
+    ///
+    /// Wherever a history is needed, a `Load` (held from t = 0 on), a sequence of (time, load) joined by straight lines, and a function of
+    /// time that returns a `Load` do as well.
+    ///
+    /// >>> ramp = LoadHistory.ramp(Load.force(0), Load.force(2), 1.0)
+    /// >>> ramp.at(0.25)
+    /// Load.force(0.5)
+    #[pyclass(frozen, module = "viscocontact")]
+    LoadHistory(pub history: Arc<dyn History>) of impl History + 'static => Arc::new
 }
 
 /// Loads at times, from a sequence of (time, load).
-fn rows(table: &Bound<'_, PyAny>) -> PyResult<Vec<(f64, ld::Load)>> {
+fn rows(table: &Object<'_>) -> PyResult<Vec<(f64, ld::Load)>> {
     let rows: Vec<(f64, Bound<'_, Load>)> = table.extract()?;
     Ok(rows.into_iter().map(|(t, load)| (t, load.get().load)).collect())
 }
@@ -181,32 +171,26 @@ impl LoadHistory {
 
     /// Checks the laws of histories at times [s]: a load everywhere, breakpoints that ascend, smooth in between. Raises ValueError with the
     /// first violation.
-    fn check(&self, py: Python<'_>, times: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn check(&self, py: Python<'_>, times: &Object<'_>) -> PyResult<()> {
         let times = column("times", times)?;
         let verdict = free(py, || ld::laws::all(&*self.history, &times));
         no_violation(self.history.failure(), verdict)
     }
 }
 
-made_by_calls!(LoadHistory);
-
 fn of_columns(
-    times: &Bound<'_, PyAny>,
+    times: &Object<'_>,
     name: &str,
-    values: &Bound<'_, PyAny>,
+    values: &Object<'_>,
     load: fn(f64) -> ld::Load,
 ) -> PyResult<viscocontact::Result<ld::PiecewiseLinear>> {
-    let (times, values) = (column("times", times)?, column(name, values)?);
-    if times.len() != values.len() {
-        let (n, m) = (times.len(), values.len());
-        return Err(PyValueError::new_err(format!("{name}: {m} given, {n} needed, one for each time")));
-    }
-    Ok(ld::PiecewiseLinear::new(&times.into_iter().zip(values.into_iter().map(load)).collect::<Vec<_>>()))
+    let rows = together(["times", name], times, values)?.into_iter().map(|(t, value)| (t, load(value)));
+    Ok(ld::PiecewiseLinear::new(&rows.collect::<Vec<_>>()))
 }
 
 impl LoadHistory {
     /// Any history: a `LoadHistory`, a load that is held, a sequence of (time, load), or a function.
-    pub fn any<'py>(given: &Bound<'py, PyAny>) -> PyResult<Bound<'py, LoadHistory>> {
+    pub fn any<'py>(given: &Object<'py>) -> PyResult<Bound<'py, LoadHistory>> {
         let py = given.py();
         if let Ok(history) = given.cast::<LoadHistory>() {
             return Ok(history.clone());
@@ -226,23 +210,23 @@ impl LoadHistory {
 }
 
 /// The history of the crate.
-pub fn history(given: &Bound<'_, PyAny>) -> PyResult<Arc<dyn History>> {
+pub fn history(given: &Object<'_>) -> PyResult<Arc<dyn History>> {
     Ok(Arc::clone(&LoadHistory::any(given)?.get().history))
 }
 
 /// The histories of a run: one, or a sequence with one for each body.
-pub fn histories<'py>(given: &Bound<'py, PyAny>) -> PyResult<Vec<Bound<'py, LoadHistory>>> {
+pub fn histories<'py>(given: &Object<'py>) -> PyResult<Vec<Bound<'py, LoadHistory>>> {
     let one = match LoadHistory::any(given) {
         Ok(one) => return Ok(vec![one]),
         Err(error) => error,
     };
-    let each = given.extract::<Vec<Bound<'_, PyAny>>>().ok().filter(|each| !each.is_empty());
+    let each = given.extract::<Vec<Object<'_>>>().ok().filter(|each| !each.is_empty());
     let each = each.and_then(|each| each.iter().map(LoadHistory::any).collect::<PyResult<_>>().ok());
     each.ok_or(one)
 }
 
 /// The loads of a step: one, or one for each body.
-pub fn loads(given: &Bound<'_, PyAny>) -> PyResult<Vec<ld::Load>> {
+pub fn loads(given: &Object<'_>) -> PyResult<Vec<ld::Load>> {
     if let Ok(load) = given.cast::<Load>() {
         return Ok(vec![load.get().load]);
     }

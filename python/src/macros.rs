@@ -1,36 +1,44 @@
 //! What many classes repeat.
 
 /// Getters of a class: documentation, name, type and value, of what the class wraps, of a field, or of what a method of it
-/// gives (`by`).
+/// gives (`by`). Those that make objects of Python name it after the value.
 macro_rules! getters {
-    (by $get:ident $class:ident, $of:ident: $($(#[$doc:meta])* $name:ident: $type:ty = $value:expr;)*) => {
+    (by $get:ident $class:ident, $of:ident, $py:ident: $($(#[$doc:meta])* $name:ident: $type:ty = $value:expr;)*) => {
         #[pymethods]
         impl $class {
             $(
                 $(#[$doc])*
                 #[getter]
-                fn $name(slf: crate::used::Shared<'_, Self>) -> PyResult<$type> {
+                fn $name<'py>(slf: crate::used::Shared<'_, Self>, $py: Python<'py>) -> PyResult<$type> {
+                    let _ = $py;
                     let $of = slf.$get()?;
                     Ok($value)
                 }
             )*
         }
     };
-    ($class:ident, $of:ident: $($rest:tt)*) => {
-        getters! {$class.0, $of: $($rest)*}
-    };
-    ($class:ident.$field:tt, $of:ident: $($(#[$doc:meta])* $name:ident: $type:ty = $value:expr;)*) => {
+    ($class:ident.$field:tt, $of:ident, $py:ident: $($(#[$doc:meta])* $name:ident: $type:ty = $value:expr;)*) => {
         #[pymethods]
         impl $class {
             $(
                 $(#[$doc])*
                 #[getter]
-                fn $name(&self) -> $type {
+                fn $name<'py>(&self, $py: Python<'py>) -> $type {
+                    let _ = $py;
                     let $of = &self.$field;
                     $value
                 }
             )*
         }
+    };
+    (by $get:ident $class:ident, $of:ident: $($rest:tt)*) => {
+        getters! {by $get $class, $of, _py: $($rest)*}
+    };
+    ($class:ident.$field:tt, $of:ident: $($rest:tt)*) => {
+        getters! {$class.$field, $of, _py: $($rest)*}
+    };
+    ($class:ident, $($rest:tt)*) => {
+        getters! {$class.0, $($rest)*}
     };
 }
 
@@ -53,13 +61,59 @@ macro_rules! makers {
     };
 }
 
-/// A dict of names and values.
+/// Methods that make another object of one: documentation, name, arguments, and what the crate makes of the object `$slf` and them.
+macro_rules! changes {
+    ($class:ident, $slf:ident: $($(#[$meta:meta])* $name:ident($($arg:ident: $type:ty),*) = $made:expr;)*) => {
+        #[pymethods]
+        impl $class {
+            $(
+                $(#[$meta])*
+                pub fn $name($slf: Bound<'_, Self>, $($arg: $type),*) -> PyResult<$class> {
+                    let made = $made.or_raise()?;
+                    let recipe = crate::recipe::Recipe::new($slf.py(), stringify!($name), ($slf.clone(), $($arg,)*))?;
+                    Ok($class::by(recipe, made))
+                }
+            )*
+        }
+    };
+}
+
+/// A dict of names and values; those of an object that have the names of its fields are its fields alone.
 macro_rules! dict {
     ($py:expr; $($name:literal: $value:expr),* $(,)?) => {{
         let all = pyo3::types::PyDict::new($py);
         $(all.set_item($name, $value)?;)*
         all
     }};
+    ($py:expr; $of:ident { $($field:ident),* } $(, $name:literal: $value:expr)* $(,)?) => {{
+        let all = pyo3::types::PyDict::new($py);
+        $(all.set_item(stringify!($field), $of.$field)?;)*
+        $(all.set_item($name, $value)?;)*
+        all
+    }};
+}
+
+/// A class whose objects are made again by the call that made them: its documentation and properties, its name, and what of the crate it
+/// has, by what `by` takes and makes of it.
+macro_rules! made {
+    ($(#[$meta:meta])* $class:ident($seen:vis $field:ident: $type:ty)) => {
+        made! {$(#[$meta])* $class($seen $field: $type) of $type => std::convert::identity}
+    };
+    ($(#[$meta:meta])* $class:ident($seen:vis $field:ident: $type:ty) of $given:ty => $make:expr) => {
+        $(#[$meta])*
+        pub struct $class {
+            $seen $field: $type,
+            recipe: crate::recipe::Recipe,
+        }
+
+        impl $class {
+            pub fn by(recipe: crate::recipe::Recipe, given: $given) -> $class {
+                $class { $field: $make(given), recipe }
+            }
+        }
+
+        made_by_calls! {$class}
+    };
 }
 
 /// The methods of a class whose objects are made again by the call that made them, which the field `recipe` has.

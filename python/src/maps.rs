@@ -1,13 +1,12 @@
 //! Measured and generated surfaces.
 
 use std::fs::File;
-use std::path::Path;
 
+use viscocontact::TextFormat;
 use viscocontact::geometry::{self as geo, Anisotropy, Form, LengthUnit, RoughSpec, Roughness};
-use viscocontact::{FileError, TextFormat};
 
 use crate::arrays::{plane, table};
-use crate::errors::raise;
+use crate::errors::unreadable;
 use crate::prelude::*;
 
 /// Heights of a surface on a regular grid of points, measured or computed; a `Shape`.
@@ -78,7 +77,7 @@ impl HeightMap {
     #[pyo3(signature = (heights, lengths, periodic=false))]
     fn new(
         py: Python<'_>,
-        heights: &Bound<'_, PyAny>,
+        heights: &Object<'_>,
         lengths: PerAxis<f64>,
         periodic: bool,
     ) -> PyResult<PyClassInitializer<HeightMap>> {
@@ -116,23 +115,18 @@ impl HeightMap {
     ) -> PyResult<Py<HeightMap>> {
         let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
         let unit = unit.map(|unit| unit.parse::<LengthUnit>().or_raise()).transpose()?;
-        let mut format = TextFormat::default();
-        if let Some(comma) = decimal_comma {
-            format = format.with_decimal_comma(comma);
-        }
-        if let Some(height) = missing_height {
-            format = format.with_missing_height(height);
-        }
+        let format = if_given(TextFormat::default(), decimal_comma, TextFormat::with_decimal_comma);
+        let format = if_given(format, missing_height, TextFormat::with_missing_height);
         let lengths = lengths.map(|lengths| lengths.0);
         let needs = |what: &str| PyTypeError::new_err(format!("{}: this kind of file needs {what}", path.display()));
         let map = match ending.as_str() {
             "sdf" | "sur" | "pro" | "x3p" => free(py, || geo::HeightMap::read(&path)),
             "gsf" => {
-                let file = opened(&path)?;
+                let file = File::open(&path).map_err(unreadable(&path))?;
                 free(py, || geo::HeightMap::from_gsf(file, unit))
             }
             _ => {
-                let file = opened(&path)?;
+                let file = File::open(&path).map_err(unreadable(&path))?;
                 let unit = unit.ok_or_else(|| needs("the unit of its numbers, such as unit=\"um\""))?;
                 if points {
                     free(py, || geo::HeightMap::from_xyz(file, unit, unit, format))
@@ -152,7 +146,7 @@ impl HeightMap {
 
     /// A map of points (x, y, height) [m] on a regular grid in any order: an array of shape (n, 3).
     #[staticmethod]
-    fn from_points(py: Python<'_>, points: &Bound<'_, PyAny>) -> PyResult<Py<HeightMap>> {
+    fn from_points(py: Python<'_>, points: &Object<'_>) -> PyResult<Py<HeightMap>> {
         let points: Vec<[f64; 3]> = table("points", points)?;
         HeightMap::made(py, free(py, || geo::HeightMap::from_points(&points)).or_raise()?)
     }
@@ -216,39 +210,35 @@ impl HeightMap {
         HeightMap::changed(slf, "periodic", (slf.clone(),), |map| Ok(map.periodic()))
     }
 
-    /// The map interpolated at the cells of a grid, and the error of that: rms [m], greatest [m], rms over the rms height.
-    fn resampled(&self, py: Python<'_>, grid: &Grid) -> PyResult<(Py<HeightMap>, (f64, f64, f64))> {
+    /// The map interpolated at the cells of a grid, and the error of that: a dict of "rms" and "max" [m], and the rms "of_rms_height".
+    fn resampled<'py>(&self, py: Python<'py>, grid: &Grid) -> PyResult<(Py<HeightMap>, Dict<'py>)> {
         let new = free(py, || self.0.resampled(&grid.0)).or_raise()?;
-        let error = (new.error.rms, new.error.max, new.error.of_rms_height);
-        Ok((HeightMap::made(py, new.map)?, error))
+        let error = new.error;
+        Ok((HeightMap::made(py, new.map)?, dict! { py; error { rms, max, of_rms_height } }))
     }
 
     /// A dict of "mean", "rms_height" [m], "skewness", "kurtosis", "rms_slope", "rms_slopes" along x1 and x2, and "rms_curvature" [1/m].
-    fn statistics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+    fn statistics<'py>(&self, py: Python<'py>) -> PyResult<Dict<'py>> {
         let of = free(py, || self.0.statistics()).or_raise()?;
+        let slopes: (f64, f64) = of.rms_slopes.into();
         Ok(dict! { py;
-            "mean": of.mean,
-            "rms_height": of.rms_height,
-            "skewness": of.skewness,
-            "kurtosis": of.kurtosis,
-            "rms_slope": of.rms_slope,
-            "rms_curvature": of.rms_curvature,
-            "rms_slopes": PyTuple::new(py, of.rms_slopes)?,
+            of { mean, rms_height, skewness, kurtosis, rms_slope, rms_curvature },
+            "rms_slopes": slopes,
         })
     }
 
     /// The heights [m] in the middle of so many bins, and their density [1/m], as rows.
     fn height_distribution<'py>(&self, py: Python<'py>, bins: Count) -> PyResult<Array<'py>> {
-        rows(py, free(py, || self.0.height_distribution(bins.0)).or_raise()?)
+        rows_of(py, free(py, || self.0.height_distribution(bins.0)).or_raise()?)
     }
 
     /// Wave numbers [rad/m] and the radial mean of the power spectral density of the heights [m⁴], as rows.
     fn power_spectrum<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
-        rows(py, free(py, || self.0.power_spectrum()).or_raise()?)
+        rows_of(py, free(py, || self.0.power_spectrum()).or_raise()?)
     }
 
     /// The height at `x1` along the line x2 = `x2` [m], NaN where there is none: a float or an array of the shape of `x1`.
-    fn height_at<'py>(&self, x1: &Bound<'py, PyAny>, x2: f64) -> PyResult<Bound<'py, PyAny>> {
+    fn height_at<'py>(&self, x1: &Object<'py>, x2: f64) -> PyResult<Object<'py>> {
         mapped("x1", x1, ALL, |x1| self.0.height_at(x1, x2).unwrap_or(f64::NAN), never)
     }
 
@@ -300,13 +290,10 @@ impl HeightMap {
             (None, Some(height)) => Roughness::RmsHeight(height),
             _ => return Err(PyTypeError::new_err("give rms_slope or rms_height, one of them")),
         };
-        let mut spec = RoughSpec::new(longest, shortest, roughness).with_seed(seed as u64).with_hurst(hurst);
-        if let Some(roll_off) = roll_off {
-            spec = spec.with_roll_off(roll_off);
-        }
-        if let Some((ratio, direction)) = anisotropy {
-            spec = spec.with_anisotropy(Anisotropy::new(ratio, direction));
-        }
+        let spec = RoughSpec::new(longest, shortest, roughness).with_seed(seed as u64).with_hurst(hurst);
+        let spec = if_given(spec, roll_off, RoughSpec::with_roll_off);
+        let along = anisotropy.map(|(ratio, direction)| Anisotropy::new(ratio, direction));
+        let spec = if_given(spec, along, RoughSpec::with_anisotropy);
         let on = &grid.get().0;
         let period = period.map(|period| period.0);
         let rough = free(py, || match period {
@@ -364,17 +351,4 @@ fn matrix(
 /// Refuses, or where `only_warns` warns of, sides that make squares of the cells if they are exchanged, and only then.
 fn squared(py: Python<'_>, map: &geo::HeightMap, lengths: [f64; 2], only_warns: bool) -> PyResult<()> {
     py.import("viscocontact._values")?.call_method1("squared", (map.cells(), lengths, only_warns)).map(drop)
-}
-
-fn opened(path: &Path) -> PyResult<File> {
-    File::open(path).map_err(|error| {
-        let (file, reason, kind) = (path.display().to_string(), error.to_string(), Some(error.kind()));
-        raise(&FileError::Unreadable { file, reason, kind }.into())
-    })
-}
-
-/// Pairs as the rows of an array.
-fn rows(py: Python<'_>, of: Vec<(f64, f64)>) -> PyResult<Array<'_>> {
-    let n = of.len();
-    to_array(py, of.into_iter().flat_map(|(x, y)| [x, y]).collect(), &[n, 2])
 }

@@ -5,69 +5,45 @@ use viscocontact::rheology as rh;
 use crate::prelude::*;
 use crate::rheology::{Series, series};
 
-/// A rheology that was measured in tension: what it gives as J(t) is the strain of a rod under unit tension, and its moduli are Young's.
-///
-/// A `Material` of it needs `nu` or `bulk_modulus`.
-///
-/// >>> Material(Tension(Rheology.relaxing(3e6, 1.5e6, 0.1)), nu=0.49)
-/// Material(Tension(Rheology.relaxing(3000000.0, 1500000.0, 0.1)), nu=0.49)
-#[pyclass(frozen, module = "viscocontact")]
-pub struct Tension(pub Py<Rheology>);
+made! {
+    /// A rheology that was measured in tension: what it gives as J(t) is the strain of a rod under unit tension, and its moduli are Young's.
+    ///
+    /// A `Material` of it needs `nu` or `bulk_modulus`.
+    ///
+    /// >>> Material(Tension(Rheology.relaxing(3e6, 1.5e6, 0.1)), nu=0.49)
+    /// Material(Tension(Rheology.relaxing(3000000.0, 1500000.0, 0.1)), nu=0.49)
+    #[pyclass(frozen, module = "viscocontact")]
+    Tension(body: Arc<dyn rh::Rheology>)
+}
 
 #[pymethods]
 impl Tension {
     #[new]
-    fn new(rheology: Py<Rheology>) -> Tension {
-        Tension(rheology)
-    }
-
-    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        Ok(format!("Tension({})", self.0.bind(py).repr()?))
-    }
-
-    fn __getnewargs__(&self, py: Python<'_>) -> (Py<Rheology>,) {
-        (self.0.clone_ref(py),)
-    }
-
-    fn __eq__(&self, py: Python<'_>, other: &Tension) -> PyResult<bool> {
-        self.0.bind(py).eq(&other.0)
-    }
-
-    fn __hash__(&self, py: Python<'_>) -> PyResult<isize> {
-        self.0.bind(py).hash()
-    }
-
-    fn __traverse__(&self, visit: pyo3::gc::PyVisit<'_>) -> crate::used::Traversed {
-        visit.call(&self.0)
+    pub fn new(rheology: Bound<'_, Rheology>) -> PyResult<Tension> {
+        let body = Arc::clone(&rheology.get().body);
+        Ok(Tension::by(Recipe::new(rheology.py(), "", (rheology,))?, body))
     }
 }
 
-/// A body of a contact: a rheology in shear and the response in volume.
-///
-/// Parameters
-/// ----------
-/// rheology : Rheology or Tension
-///     The shear creep, or the creep of a rod.
-/// nu : float
-///     Poisson's ratio, constant in time; 0.5, the default in shear, is incompressible.
-/// bulk_modulus : float
-///     A bulk that is elastic instead [Pa].
-/// bulk_ratio : float
-///     A bulk that relaxes in proportion to the shear: the share c of B(t)/B(0) = 1 − c (1 − G(t)/G(0)).
-///
-/// >>> pmma = Material(Rheology.relaxing(1e9, 0.5e9, 10.0), nu=0.35)
-/// >>> pmma.contact_compliance(0.0) * 1e9
-/// 0.325
-#[pyclass(frozen, module = "viscocontact")]
-pub struct Material {
-    pub material: rh::Material,
-    recipe: Recipe,
-}
-
-impl Material {
-    pub fn by(recipe: Recipe, material: rh::Material) -> Material {
-        Material { material, recipe }
-    }
+made! {
+    /// A body of a contact: a rheology in shear and the response in volume.
+    ///
+    /// Parameters
+    /// ----------
+    /// rheology : Rheology or Tension
+    ///     The shear creep, or the creep of a rod.
+    /// nu : float
+    ///     Poisson's ratio, constant in time; 0.5, the default in shear, is incompressible.
+    /// bulk_modulus : float
+    ///     A bulk that is elastic instead [Pa].
+    /// bulk_ratio : float
+    ///     A bulk that relaxes in proportion to the shear: the share c of B(t)/B(0) = 1 − c (1 − G(t)/G(0)).
+    ///
+    /// >>> pmma = Material(Rheology.relaxing(1e9, 0.5e9, 10.0), nu=0.35)
+    /// >>> pmma.contact_compliance(0.0) * 1e9
+    /// 0.325
+    #[pyclass(frozen, module = "viscocontact")]
+    Material(pub material: rh::Material)
 }
 
 makers! {Material, py:
@@ -83,13 +59,13 @@ impl Material {
     #[pyo3(signature = (rheology, nu=None, *, bulk_modulus=None, bulk_ratio=None))]
     fn new(
         py: Python<'_>,
-        rheology: Bound<'_, PyAny>,
+        rheology: Object<'_>,
         nu: Option<f64>,
         bulk_modulus: Option<f64>,
         bulk_ratio: Option<f64>,
     ) -> PyResult<Material> {
         let material = if let Ok(rod) = rheology.cast::<Tension>() {
-            let rod = rh::Tension(Arc::clone(&rod.get().0.get().body));
+            let rod = rh::Tension(Arc::clone(&rod.get().body));
             match (nu, bulk_modulus, bulk_ratio) {
                 (Some(nu), None, None) => rh::Material::from_tension(rod, nu),
                 (None, Some(bulk), None) => rh::Material::from_tension_elastic_bulk(rod, bulk),
@@ -113,28 +89,25 @@ impl Material {
             }
         }
         let recipe = Recipe::new(py, "", (rheology,))?.with_keywords(Some(&keywords))?;
-        Ok(Material { material: material.or_raise()?, recipe })
-    }
-
-    /// The two bodies as one: both deform, and their compliances add up.
-    fn against(slf: Bound<'_, Self>, other: Bound<'_, Material>) -> PyResult<Material> {
-        let material = slf.get().material.clone().against(other.get().material.clone());
-        Ok(Material { material, recipe: Recipe::new(slf.py(), "against", (slf, other))? })
-    }
-
-    /// The material with exponential series fitted over the times from `first` to `last` [s].
-    #[pyo3(signature = (first, last, tolerance=1e-4))]
-    fn fitted(slf: Bound<'_, Self>, first: f64, last: f64, tolerance: f64) -> PyResult<Material> {
-        let py = slf.py();
-        let material = &slf.get().material;
-        let material = free(py, || material.fitted(first..=last, tolerance)).or_raise()?;
-        Ok(Material { material, recipe: Recipe::new(py, "fitted", (slf, first, last, tolerance))? })
+        Ok(Material::by(recipe, material.or_raise()?))
     }
 
     /// C(t) [1/Pa] at times [s], 1/E* of an elastic body: a float, or an array of the shape of `t`.
-    fn contact_compliance<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    fn contact_compliance<'py>(&self, t: &Object<'py>) -> PyResult<Object<'py>> {
         mapped("t", t, FROM_ZERO, |t| self.material.contact_compliance(t), || self.material.failure())
     }
+}
+
+changes! {Material, slf:
+    /// The two bodies as one: both deform, and their compliances add up.
+    against(other: Bound<'_, Material>) = sure(slf.get().material.clone().against(other.get().material.clone()));
+
+    /// The material with exponential series fitted over the times from `first` to `last` [s].
+    #[pyo3(signature = (first, last, tolerance=1e-4))]
+    fitted(first: f64, last: f64, tolerance: f64) = {
+        let material = &slf.get().material;
+        free(slf.py(), || material.fitted(first..=last, tolerance))
+    };
 }
 
 getters! {Material.material, of:
@@ -147,8 +120,6 @@ getters! {Material.material, of:
     /// The errors of series that were fitted, a line each.
     fit_reports: Vec<String> = of.fit_reports().map(ToString::to_string).collect();
 }
-
-made_by_calls!(Material);
 
 /// Names, descriptions and references of the published materials.
 ///

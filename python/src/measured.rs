@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use pyo3::exceptions::PyOSError;
 use viscocontact::input::{Delimiter, TextFormat, TextTable};
 use viscocontact::rheology::{self as rh, Experiment, Units};
 
+use crate::errors::unreadable;
 use crate::materials::Tension;
 use crate::prelude::*;
 
@@ -20,54 +20,33 @@ const EXPERIMENTS: [(&str, Experiment); 4] = [
     ("storage", Experiment::Storage),
 ];
 
-/// A table of measured creep, relaxation or dynamic moduli; `fit` makes a `Rheology` of it.
-///
-/// >>> t = [0.1, 0.3, 1.0, 3.0, 10.0, 100.0]
-/// >>> creep = Measurements.creep(t, [1.05e-6, 1.14e-6, 1.39e-6, 1.78e-6, 1.99e-6, 2.00e-6])
-/// >>> body = creep.fit()
-/// >>> abs(body.creep_compliance(5.0) / 1.92e-6 - 1) < 1e-2
-/// True
-#[pyclass(frozen, module = "viscocontact")]
-pub struct Measurements {
-    measurements: rh::Measurements,
-    recipe: Recipe,
+made! {
+    /// A table of measured creep, relaxation or dynamic moduli; `fit` makes a `Rheology` of it.
+    ///
+    /// >>> t = [0.1, 0.3, 1.0, 3.0, 10.0, 100.0]
+    /// >>> creep = Measurements.creep(t, [1.05e-6, 1.14e-6, 1.39e-6, 1.78e-6, 1.99e-6, 2.00e-6])
+    /// >>> body = creep.fit()
+    /// >>> abs(body.creep_compliance(5.0) / 1.92e-6 - 1) < 1e-2
+    /// True
+    #[pyclass(frozen, module = "viscocontact")]
+    Measurements(measurements: rh::Measurements)
 }
 
 impl Measurements {
-    fn by(recipe: Recipe, measurements: rh::Measurements) -> Measurements {
-        Measurements { measurements, recipe }
-    }
-
     /// The table of a file of this text.
     fn read<'py>(
         experiment: &str,
         (path, text): (PathBuf, Bound<'py, PyBytes>),
-        units: Option<Bound<'py, PyAny>>,
-        reading: Option<Bound<'py, PyDict>>,
+        units: Option<Object<'py>>,
+        reading: Option<Dict<'py>>,
     ) -> PyResult<Measurements> {
         let py = text.py();
-        let (kind, of_file) = (choice("experiment", experiment, &EXPERIMENTS)?, of_units(units.as_ref())?);
-        let table = text_table(&path, Some(text.as_bytes()), reading.as_ref())?;
+        let kind = choice("experiment", experiment, &EXPERIMENTS)?;
+        let (table, of_file, keywords) = again(&path, &text, units, reading)?;
         let measurements = free(py, || rh::Measurements::from_table(kind, &table, of_file)).or_raise()?;
-        let keywords = reading.map_or_else(|| Ok(PyDict::new(py)), |reading| reading.copy())?;
-        keywords.set_item("units", units)?;
         let recipe = Recipe::new(py, "_of_bytes", (experiment, text))?.with_keywords(Some(&keywords))?;
-        Ok(Measurements { measurements, recipe })
+        Ok(Measurements::by(recipe, measurements))
     }
-}
-
-fn together(names: [&str; 2], x: &Bound<'_, PyAny>, y: &Bound<'_, PyAny>) -> PyResult<Vec<(f64, f64)>> {
-    let (x, y) = (column(names[0], x)?, column(names[1], y)?);
-    if x.len() != y.len() {
-        return Err(PyValueError::new_err(format!(
-            "{}: {} given, {} needed, one for each of {}",
-            names[1],
-            y.len(),
-            x.len(),
-            names[0]
-        )));
-    }
-    Ok(x.into_iter().zip(y).collect())
 }
 
 makers! {Measurements, py:
@@ -111,11 +90,11 @@ impl Measurements {
         py: Python<'_>,
         experiment: &str,
         path: PathBuf,
-        units: Option<Bound<'_, PyAny>>,
-        reading: Option<Bound<'_, PyDict>>,
+        units: Option<Object<'_>>,
+        reading: Option<Dict<'_>>,
     ) -> PyResult<Measurements> {
         // made again from what the file has now
-        let text = PyBytes::new(py, &std::fs::read(&path).map_err(|error| unreadable(&path, &error))?);
+        let text = PyBytes::new(py, &std::fs::read(&path).map_err(unreadable(&path))?);
         Measurements::read(experiment, (path, text), units, reading)
     }
 
@@ -125,16 +104,10 @@ impl Measurements {
     fn _of_bytes(
         experiment: &str,
         text: Bound<'_, PyBytes>,
-        units: Option<Bound<'_, PyAny>>,
-        reading: Option<Bound<'_, PyDict>>,
+        units: Option<Object<'_>>,
+        reading: Option<Dict<'_>>,
     ) -> PyResult<Measurements> {
-        Measurements::read(experiment, (PathBuf::from("text of a pickle"), text), units, reading)
-    }
-
-    /// The same with the relative standard deviation of the values stated.
-    fn with_scatter(slf: Bound<'_, Self>, scatter: f64) -> PyResult<Measurements> {
-        let measurements = slf.get().measurements.clone().with_scatter(scatter).or_raise()?;
-        Ok(Measurements { measurements, recipe: Recipe::new(slf.py(), "with_scatter", (slf, scatter))? })
+        Measurements::read(experiment, (OF_PICKLE.into(), text), units, reading)
     }
 
     /// The body of the table, fitted by an exponential series. `extrapolated` lets it go on beyond the last time.
@@ -150,8 +123,7 @@ impl Measurements {
     /// `fit` of a table measured in tension.
     #[pyo3(signature = (extrapolated=false))]
     fn fit_tension(slf: Bound<'_, Self>, extrapolated: bool) -> PyResult<Tension> {
-        let py = slf.py();
-        Ok(Tension(Py::new(py, Measurements::_rod(slf, extrapolated)?)?))
+        Tension::new(Bound::new(slf.py(), Measurements::_rod(slf.clone(), extrapolated)?)?)
     }
 
     /// The creep of the rod, for pickle.
@@ -162,14 +134,30 @@ impl Measurements {
     }
 }
 
-made_by_calls!(Measurements);
+changes! {Measurements, slf:
+    /// The same with the relative standard deviation of the values stated.
+    with_scatter(scatter: f64) = slf.get().measurements.clone().with_scatter(scatter);
+}
 
 fn series_of(recipe: Recipe, series: rh::CreepSeries, extrapolated: bool) -> Rheology {
     Rheology::by(recipe, if extrapolated { series.extrapolated() } else { series })
 }
 
+/// The table of a text, its units, and the keywords that read it again.
+fn again<'py>(
+    path: &Path,
+    text: &Bound<'py, PyBytes>,
+    units: Option<Object<'py>>,
+    reading: Option<Dict<'py>>,
+) -> PyResult<(TextTable, Units, Dict<'py>)> {
+    let table = text_table(path, Some(text.as_bytes()), reading.as_ref())?;
+    let (of_file, keywords) = (of_units(units.as_ref())?, dict! { text.py(); "units": units });
+    reading.map_or(Ok(()), |reading| keywords.update(reading.as_mapping()))?;
+    Ok((table, of_file, keywords))
+}
+
 /// A text file, read as keywords say: `decimal_comma`, `delimiter`, `skipped_lines`, `headings` by column, and `only` some of them.
-pub fn text_table(path: &Path, text: Option<&[u8]>, reading: Option<&Bound<'_, PyDict>>) -> PyResult<TextTable> {
+pub fn text_table(path: &Path, text: Option<&[u8]>, reading: Option<&Dict<'_>>) -> PyResult<TextTable> {
     use Delimiter::{Blanks, Comma, Semicolon, Tab};
     let delimiters = [("comma", Comma), ("semicolon", Semicolon), ("tab", Tab), ("blanks", Blanks)];
     let (mut format, mut headings, mut only) = (TextFormat::default(), BTreeMap::<usize, String>::new(), None);
@@ -198,7 +186,7 @@ pub fn text_table(path: &Path, text: Option<&[u8]>, reading: Option<&Bound<'_, P
     Ok(table)
 }
 
-fn of_units(units: Option<&Bound<'_, PyAny>>) -> PyResult<Units> {
+fn of_units(units: Option<&Object<'_>>) -> PyResult<Units> {
     match units {
         None => Ok(Units::SI),
         Some(units) if units.extract::<&str>().is_ok_and(|text| text == "headings") => Ok(Units::OF_HEADINGS),
@@ -210,26 +198,28 @@ fn of_units(units: Option<&Bound<'_, PyAny>>) -> PyResult<Units> {
     }
 }
 
-/// Measurements at several temperatures, shifted along the axis of time (or frequency) to one curve.
-///
-/// Parameters
-/// ----------
-/// reference : float
-///     The temperature of the curve [K].
-/// isotherms : sequence of (temperature [K], Measurements)
-/// law : TimeTemperature, optional
-///     A known law of the same reference, without `vertical_shifts`; else the shifts are found from the data.
-/// vertical_shifts : bool
-///     Whether the values may be shifted too.
-///
-/// >>> import numpy as np
-/// >>> t = np.geomspace(1e-1, 1e1, 9)
-/// >>> creep = lambda shift: Measurements.creep(t, 1e-6 * (1 + (t / shift) ** 0.3))
-/// >>> curve = MasterCurve(300.0, [(300.0, creep(1.0)), (310.0, creep(0.1))])
-/// >>> [round(shift, 2) for temperature, shift, error in curve.shift_factors]
-/// [1.0, 0.1]
-#[pyclass(frozen, module = "viscocontact")]
-pub struct MasterCurve(rh::MasterCurve);
+made! {
+    /// Measurements at several temperatures, shifted along the axis of time (or frequency) to one curve.
+    ///
+    /// Parameters
+    /// ----------
+    /// reference : float
+    ///     The temperature of the curve [K].
+    /// isotherms : sequence of (temperature [K], Measurements)
+    /// law : TimeTemperature, optional
+    ///     A known law of the same reference, without `vertical_shifts`; else the shifts are found from the data.
+    /// vertical_shifts : bool
+    ///     Whether the values may be shifted too.
+    ///
+    /// >>> import numpy as np
+    /// >>> t = np.geomspace(1e-1, 1e1, 9)
+    /// >>> creep = lambda shift: Measurements.creep(t, 1e-6 * (1 + (t / shift) ** 0.3))
+    /// >>> curve = MasterCurve(300.0, [(300.0, creep(1.0)), (310.0, creep(0.1))])
+    /// >>> [round(shift, 2) for temperature, shift, error in curve.shift_factors]
+    /// [1.0, 0.1]
+    #[pyclass(frozen, module = "viscocontact")]
+    MasterCurve(curve: rh::MasterCurve)
+}
 
 #[pymethods]
 impl MasterCurve {
@@ -239,15 +229,15 @@ impl MasterCurve {
         py: Python<'_>,
         reference: f64,
         isotherms: Vec<(f64, Bound<'_, Measurements>)>,
-        law: Option<&TimeTemperature>,
+        law: Option<Bound<'_, TimeTemperature>>,
         vertical_shifts: bool,
     ) -> PyResult<MasterCurve> {
-        let isotherms = isotherms
-            .into_iter()
-            .map(|(temperature, measured)| rh::Isotherm::new(temperature, measured.get().measurements.clone()));
-        let isotherms = isotherms.collect::<viscocontact::Result<Vec<_>>>().or_raise()?;
-        if let Some(law) = law {
-            let own = law.law.reference();
+        let isotherm = |(temperature, measured): &(f64, Bound<'_, Measurements>)| {
+            rh::Isotherm::new(*temperature, measured.get().measurements.clone())
+        };
+        let measured = isotherms.iter().map(isotherm).collect::<viscocontact::Result<Vec<_>>>().or_raise()?;
+        let known = law.as_ref().map(|law| &law.get().law);
+        if let Some(own) = known.map(rh::TimeTemperature::reference) {
             if (reference - own).abs() > SAME_TEMPERATURE * own {
                 return Err(PyValueError::new_err(format!(
                     "reference = {reference} K is not that of the law, {own} K: give law.reference, and move the fitted body by law.at(body, {reference})"
@@ -259,12 +249,13 @@ impl MasterCurve {
                 ));
             }
         }
-        let curve = free(py, || match law {
-            Some(law) => rh::MasterCurve::with_law(&law.law, isotherms),
-            None if vertical_shifts => rh::MasterCurve::with_vertical_shifts(reference, isotherms),
-            None => rh::MasterCurve::new(reference, isotherms),
+        let curve = free(py, || match known {
+            Some(law) => rh::MasterCurve::with_law(law, measured),
+            None => shifted(reference, measured, vertical_shifts),
         });
-        curve.or_raise().map(MasterCurve)
+        let keywords = dict! { py; "law": law, "vertical_shifts": vertical_shifts };
+        let recipe = Recipe::new(py, "", (reference, isotherms))?.with_keywords(Some(&keywords))?;
+        Ok(MasterCurve::by(recipe, curve.or_raise()?))
     }
 
     /// The curve of a text file with a column of the temperature in K or °C, read as by `Measurements.from_csv`.
@@ -278,68 +269,69 @@ impl MasterCurve {
         experiment: &str,
         path: PathBuf,
         reference: f64,
-        units: Option<&Bound<'_, PyAny>>,
+        units: Option<Object<'_>>,
         vertical_shifts: bool,
-        reading: Option<&Bound<'_, PyDict>>,
+        reading: Option<Dict<'_>>,
     ) -> PyResult<MasterCurve> {
-        let (experiment, units) = (choice("experiment", experiment, &EXPERIMENTS)?, of_units(units)?);
-        let table = text_table(&path, None, reading)?;
-        let curve = free(py, || {
-            let isotherms = rh::Isotherm::from_table(experiment, &table, units)?;
-            if vertical_shifts {
-                rh::MasterCurve::with_vertical_shifts(reference, isotherms)
-            } else {
-                rh::MasterCurve::new(reference, isotherms)
-            }
-        });
-        curve.or_raise().map(MasterCurve)
+        let text = PyBytes::new(py, &std::fs::read(&path).map_err(unreadable(&path))?);
+        MasterCurve::read(experiment, (path, text), reference, units, vertical_shifts, reading)
+    }
+
+    /// The curve of a pickle.
+    #[staticmethod]
+    #[pyo3(signature = (experiment, text, reference, *, units, vertical_shifts, **reading))]
+    fn _of_bytes(
+        experiment: &str,
+        text: Bound<'_, PyBytes>,
+        reference: f64,
+        units: Option<Object<'_>>,
+        vertical_shifts: bool,
+        reading: Option<Dict<'_>>,
+    ) -> PyResult<MasterCurve> {
+        MasterCurve::read(experiment, (OF_PICKLE.into(), text), reference, units, vertical_shifts, reading)
     }
 
     /// Temperature [K], shift factor a_T and standard error of log₁₀ a_T of each isotherm.
     #[getter]
     fn shift_factors(&self) -> Vec<(f64, f64, f64)> {
-        let (factors, errors) = (self.0.shift_factors(), self.0.shift_errors());
-        factors
-            .into_iter()
-            .zip(errors)
-            .map(|((temperature, factor), (_, error))| (temperature, factor, error))
-            .collect()
+        let pairs = self.curve.shift_factors().into_iter().zip(self.curve.shift_errors());
+        pairs.map(|((temperature, factor), (_, error))| (temperature, factor, error)).collect()
     }
 
     /// The WLF law through the shift factors: constants C₁, C₂ [K] and reference [K] of a `TimeTemperature`. It has the vertical factors
     /// of the curve.
     fn wlf(&self, py: Python<'_>) -> PyResult<TimeTemperature> {
-        let law = self.0.wlf().or_raise()?;
+        let law = self.curve.wlf().or_raise()?;
         let [c1, c2] = law.wlf_constants().unwrap_or([f64::NAN; 2]);
         self.with_vertical(py, &law, TimeTemperature::wlf(py, c1, c2, law.reference())?)
     }
 
     /// The Arrhenius law through the shift factors. It has the vertical factors of the curve.
     fn arrhenius(&self, py: Python<'_>) -> PyResult<TimeTemperature> {
-        let law = self.0.arrhenius().or_raise()?;
+        let law = self.curve.arrhenius().or_raise()?;
         let energy = law.activation_energy().unwrap_or(f64::NAN);
         self.with_vertical(py, &law, TimeTemperature::arrhenius(py, energy, law.reference())?)
     }
 
     /// The law of the shift factors themselves, a table, with the vertical factors of the curve.
     fn shift_table(&self, py: Python<'_>) -> PyResult<TimeTemperature> {
-        let law = self.0.shift_table().or_raise()?;
-        let table = self.0.shift_factors().into_pyobject(py)?;
+        let law = self.curve.shift_table().or_raise()?;
+        let table = self.curve.shift_factors().into_pyobject(py)?;
         self.with_vertical(py, &law, TimeTemperature::table(py, Value(table.into_any()), law.reference())?)
     }
 
     /// The body at the reference temperature.
     #[pyo3(signature = (extrapolated=false))]
     fn fit(slf: Bound<'_, Self>, extrapolated: bool) -> PyResult<Rheology> {
-        let (py, curve) = (slf.py(), &slf.get().0);
+        let (py, curve) = (slf.py(), &slf.get().curve);
         let series = free(py, || curve.fit()).or_raise()?;
         Ok(series_of(Recipe::of::<MasterCurve>(py, "fit", (slf.clone(), extrapolated))?, series, extrapolated))
     }
 
     /// The points of the curve: reduced times [s] or angular frequencies [rad/s] and values, by function.
-    fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+    fn points<'py>(&self, py: Python<'py>) -> PyResult<Dict<'py>> {
         let all = PyDict::new(py);
-        for (x, function, value) in self.0.points() {
+        for (x, function, value) in self.curve.points() {
             let name = format!("{function:?}").to_lowercase();
             let rows = match all.get_item(&name)? {
                 Some(rows) => rows.cast_into::<pyo3::types::PyList>()?,
@@ -355,7 +347,35 @@ impl MasterCurve {
     }
 }
 
+/// The name of a file that is read again from a pickle.
+const OF_PICKLE: &str = "text of a pickle";
+
+/// A curve of shifts that are found from the data.
+fn shifted(reference: f64, isotherms: Vec<rh::Isotherm>, vertical: bool) -> viscocontact::Result<rh::MasterCurve> {
+    let make = if vertical { rh::MasterCurve::with_vertical_shifts } else { rh::MasterCurve::new };
+    make(reference, isotherms)
+}
+
 impl MasterCurve {
+    /// The curve of a file of this text.
+    fn read<'py>(
+        experiment: &str,
+        (path, text): (PathBuf, Bound<'py, PyBytes>),
+        reference: f64,
+        units: Option<Object<'py>>,
+        vertical_shifts: bool,
+        reading: Option<Dict<'py>>,
+    ) -> PyResult<MasterCurve> {
+        let py = text.py();
+        let kind = choice("experiment", experiment, &EXPERIMENTS)?;
+        let (table, of_file, keywords) = again(&path, &text, units, reading)?;
+        let isotherms = || rh::Isotherm::from_table(kind, &table, of_file);
+        let curve = free(py, || shifted(reference, isotherms()?, vertical_shifts)).or_raise()?;
+        keywords.set_item("vertical_shifts", vertical_shifts)?;
+        let recipe = Recipe::new(py, "_of_bytes", (experiment, text, reference))?.with_keywords(Some(&keywords))?;
+        Ok(MasterCurve::by(recipe, curve))
+    }
+
     /// A law that was `made` anew, with the vertical factors of the `law` of the curve.
     fn with_vertical(
         &self,
@@ -367,21 +387,15 @@ impl MasterCurve {
             return Ok(made);
         }
         let row = |(temperature, _)| Ok((temperature, law.vertical_factor(temperature)?));
-        let rows = self.0.shift_factors().into_iter().map(row).collect::<viscocontact::Result<Vec<_>>>().or_raise()?;
+        let rows =
+            self.curve.shift_factors().into_iter().map(row).collect::<viscocontact::Result<Vec<_>>>().or_raise()?;
         TimeTemperature::with_vertical_factors(Bound::new(py, made)?, Value(rows.into_pyobject(py)?))
     }
 }
 
-getters! {MasterCurve, of:
+getters! {MasterCurve.curve, of:
     /// Temperature [K] and vertical factor of each isotherm.
     vertical_factors: Vec<(f64, f64)> = of.vertical_factors();
     /// Temperature [K] of each isotherm, and how far it is off its neighbours where they overlap, relative.
     disagreements: Vec<(f64, f64)> = of.disagreements();
-}
-
-/// The OSError of a file, of the kind that its number has, with its name.
-fn unreadable(path: &std::path::Path, error: &std::io::Error) -> PyErr {
-    let text = error.to_string();
-    let reason = text.split(" (os error").next().unwrap_or_default().to_owned();
-    PyOSError::new_err((error.raw_os_error(), reason, path.display().to_string()))
 }

@@ -12,10 +12,11 @@ macro_rules! observed {
     ($class:ident) => {
         #[pymethods]
         impl $class {
-            /// The force that moves `shape` along the surface without friction, along x1 and x2 [N].
-            fn lateral_force(slf: Shared<'_, Self>, py: Python<'_>, shape: &Shape) -> PyResult<(f64, f64)> {
+            /// The force that moves `shape` along the surface without friction, along x1 and x2 [N]: the pressure times the slopes of the shape,
+            /// which leave it within a cell of the edge of the contact. Of a steady motion `SlidingReport.lateral_force` is more accurate.
+            fn slope_force(slf: Shared<'_, Self>, py: Python<'_>, shape: &Shape) -> PyResult<(f64, f64)> {
                 let contact = slf.shown()?;
-                Ok(free(py, || contact.lateral_force(&*shape.geometry)).into())
+                Ok(free(py, || contact.slope_force(&*shape.geometry)).into())
             }
 
             /// Normal stiffness over the contact modulus [m].
@@ -26,44 +27,26 @@ macro_rules! observed {
 
             /// Relative errors due to the mesh, measured by elastic contacts on half and a quarter of the cells along each side: "approach", "max_pressure" (None where it does not converge), "pressure_field" (Σ |δp| over
             /// Σ p), "area"; None where they are too few.
-            fn mesh_error<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
+            fn mesh_error<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Option<Dict<'py>>> {
                 let contact = slf.shown()?;
                 let Some(error) = free(py, || contact.mesh_error()).or_raise()? else { return Ok(None) };
-                Ok(Some(dict! { py;
-                    "approach": error.approach,
-                    "max_pressure": error.max_pressure,
-                    "pressure_field": error.pressure_field,
-                    "area": error.area,
-                }))
+                Ok(Some(dict! { py; error { approach, max_pressure, pressure_field, area } }))
             }
 
             /// The distribution of the pressure over the grid: the share at zero, the centres of the bins [Pa], and the density [1/Pa].
-            fn pressure_distribution<'py>(
-                slf: Shared<'_, Self>,
-                py: Python<'py>,
-                bins: Count,
-            ) -> PyResult<(f64, Array<'py>, Array<'py>)> {
+            fn pressure_distribution<'py>(slf: Shared<'_, Self>, py: Python<'py>, bins: Count) -> PyResult<Bins<'py>> {
                 distribution(py, &slf.shown()?.pressure_distribution(bins.0).or_raise()?)
             }
 
             /// The distribution of the gap where it is finite: the share at zero, the centres of the bins [m], and the density [1/m].
-            fn gap_distribution<'py>(
-                slf: Shared<'_, Self>,
-                py: Python<'py>,
-                bins: Count,
-            ) -> PyResult<(f64, Array<'py>, Array<'py>)> {
+            fn gap_distribution<'py>(slf: Shared<'_, Self>, py: Python<'py>, bins: Count) -> PyResult<Bins<'py>> {
                 distribution(py, &slf.shown()?.gap_distribution(bins.0).or_raise()?)
             }
 
             /// Arrays "position" [m], "pressure", "displacement", "gap" and "traction" along the line of cells in the direction of the axis `along`
             /// (0 or 1) that contains the other coordinate `at` [m].
             #[pyo3(signature = (along=0, at=0.0))]
-            fn profile<'py>(
-                slf: Shared<'_, Self>,
-                py: Python<'py>,
-                along: usize,
-                at: f64,
-            ) -> PyResult<Bound<'py, PyDict>> {
+            fn profile<'py>(slf: Shared<'_, Self>, py: Python<'py>, along: usize, at: f64) -> PyResult<Dict<'py>> {
                 let line = slf.shown()?.profile(axis(along)?, at).or_raise()?;
                 let named = [
                     ("position", line.positions),
@@ -84,17 +67,9 @@ macro_rules! observed {
 
             /// About a point [m] along x1 and x2: the "center_of_pressure" [m], the "reach" to the ends of the contact, back and ahead along each
             /// axis [m], and its "skewness", (ahead − back)/(ahead + back); None without contact.
-            fn asymmetry<'py>(
-                slf: Shared<'_, Self>,
-                py: Python<'py>,
-                about: [f64; 2],
-            ) -> PyResult<Option<Bound<'py, PyDict>>> {
+            fn asymmetry<'py>(slf: Shared<'_, Self>, py: Python<'py>, about: [f64; 2]) -> PyResult<Option<Dict<'py>>> {
                 let Some(of) = slf.shown()?.asymmetry(about).or_raise()? else { return Ok(None) };
-                Ok(Some(dict! { py;
-                    "center_of_pressure": of.center_of_pressure,
-                    "reach": of.reach,
-                    "skewness": of.skewness(),
-                }))
+                Ok(Some(dict! { py; of { center_of_pressure, reach }, "skewness": of.skewness() }))
             }
 
             /// The stress below the surface of the creeping body, or with `in_counter_body` of the other one.
@@ -116,18 +91,12 @@ observed!(ViscoelasticContact);
 observed!(ElasticContact);
 observed!(Fields);
 
-type Labelled<'py> = (Bound<'py, PyAny>, Vec<Bound<'py, PyDict>>);
+type Labelled<'py> = (Object<'py>, Vec<Dict<'py>>);
 
 fn labelled<'py>(py: Python<'py>, grid: &viscocontact::Grid, patches: ob::Patches) -> PyResult<Labelled<'py>> {
     let of = |patch: &ob::Patch| {
-        Ok(dict! { py;
-            "cells": patch.cells,
-            "area": patch.area,
-            "force": patch.force,
-            "centroid": (patch.centroid[0], patch.centroid[1]),
-            "max_pressure": patch.max_pressure,
-            "winds": (patch.winds[0], patch.winds[1]),
-        })
+        let (centroid, winds): ((f64, f64), (bool, bool)) = (patch.centroid.into(), patch.winds.into());
+        Ok(dict! { py; patch { cells, area, force, max_pressure }, "centroid": centroid, "winds": winds })
     };
     let all = patches.all.iter().map(of).collect::<PyResult<_>>()?;
     Ok((patches.labels.into_pyarray(py).reshape(grid.cells())?.into_any(), all))
@@ -144,14 +113,16 @@ fn labelled<'py>(py: Python<'py>, grid: &viscocontact::Grid, patches: ob::Patche
 pub fn patches<'py>(
     py: Python<'py>,
     grid: &Grid,
-    pressure: &Bound<'py, PyAny>,
+    pressure: &Object<'py>,
     periodic: [bool; 2],
 ) -> PyResult<Labelled<'py>> {
     let pressure = field("pressure", pressure, grid.0.cells())?;
     labelled(py, &grid.0, free(py, || ob::Patches::new(&grid.0, &pressure, periodic)).or_raise()?)
 }
 
-fn distribution<'py>(py: Python<'py>, of: &ob::Distribution) -> PyResult<(f64, Array<'py>, Array<'py>)> {
-    let (centers, bins) = (of.centers().collect::<Vec<_>>(), of.density.len());
-    Ok((of.share_at_zero, to_array(py, centers, &[bins])?, to_array(py, of.density.clone(), &[bins])?))
+/// The share at zero, and the centres and densities of bins.
+type Bins<'py> = (f64, Array<'py>, Array<'py>);
+
+fn distribution<'py>(py: Python<'py>, of: &ob::Distribution) -> PyResult<Bins<'py>> {
+    Ok((of.share_at_zero, line(py, of.centers().collect())?, line(py, of.density.clone())?))
 }

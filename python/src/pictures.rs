@@ -33,7 +33,7 @@ impl Picture {
     #[pyo3(signature = (grid, values, name, unit="", *, title="", range=None))]
     fn map(
         grid: &Grid,
-        values: &Bound<'_, PyAny>,
+        values: &Object<'_>,
         name: &str,
         unit: &str,
         title: &str,
@@ -51,13 +51,13 @@ impl Picture {
     ///
     /// >>> import numpy as np
     /// >>> t = np.geomspace(1e-3, 10.0, 50)
-    /// >>> gel = Rheology.prony(1e3, [(4e3, 0.1)])
+    /// >>> gel = Rheology.generalized_maxwell(1e3, [(4e3, 0.1)])
     /// >>> picture = Picture.history(t, {"gel": gel.relaxation_modulus(t)}, "shear modulus", "Pa", scale="log_x")
     #[staticmethod]
     #[pyo3(signature = (times, values, name, unit="", *, title="", scale="linear"))]
     fn history(
-        times: &Bound<'_, PyAny>,
-        values: &Bound<'_, PyDict>,
+        times: &Object<'_>,
+        values: &Dict<'_>,
         name: &str,
         unit: &str,
         title: &str,
@@ -90,7 +90,7 @@ impl Picture {
 
     /// Red, green and blue of each pixel, of shape (height, width, 3) and type uint8.
     #[getter]
-    fn pixels<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+    fn pixels<'py>(&self, py: Python<'py>) -> PyResult<Object<'py>> {
         let [width, height] = self.0.size().map(|side| side as usize);
         Ok(self.0.rgb().to_vec().into_pyarray(py).reshape([height, width, 3])?.into_any())
     }

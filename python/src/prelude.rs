@@ -10,10 +10,16 @@ pub use pyo3::gc::PyVisit;
 pub use pyo3::prelude::*;
 pub use pyo3::types::{PyBytes, PyDict, PyTuple};
 
-pub use crate::arrays::{ALL, Array, FROM_ZERO, column, mapped, never, to_array};
+/// Any object of Python, and a dict.
+pub type Object<'py> = Bound<'py, PyAny>;
+pub type Dict<'py> = Bound<'py, PyDict>;
+
+pub use crate::arrays::{
+    ALL, Array, FROM_ZERO, column, if_given, line, mapped, never, one_for_each, rows_of, to_array, together,
+};
 pub use crate::contact::ViscoelasticContact;
 pub use crate::elastic::ElasticContact;
-pub use crate::errors::{Kept, OrRaise, choice, in_python, no_violation, nothing_raised, raised_number};
+pub use crate::errors::{Kept, OrRaise, choice, in_python, no_violation, nothing_raised, raised_number, sure};
 pub use crate::fields::{Fields, Shown};
 pub use crate::grid::{Count, Grid, PerAxis, count};
 pub use crate::interrupt::{Listener, free, interruptible};

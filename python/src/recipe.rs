@@ -15,7 +15,7 @@ pub struct Recipe {
 }
 
 /// What `__reduce__` returns: the function that makes the object again, and its arguments.
-pub type Reduced<'py> = (Bound<'py, PyAny>, (Bound<'py, PyType>, &'static str, Py<PyTuple>, Option<Py<PyDict>>));
+pub type Reduced<'py> = (Object<'py>, (Bound<'py, PyType>, &'static str, Py<PyTuple>, Option<Py<PyDict>>));
 
 impl Recipe {
     /// `maker` is the name of a static method; empty for the class itself.
@@ -42,8 +42,8 @@ impl Recipe {
         self.class.as_ref().map_or(object, |class| class.bind(py).clone())
     }
 
-    pub fn with_keywords(self, keywords: Option<&Bound<'_, PyDict>>) -> PyResult<Recipe> {
-        let own = |keywords: &Bound<'_, PyDict>| Ok::<_, PyErr>(own(keywords)?.cast_into::<PyDict>()?.unbind());
+    pub fn with_keywords(self, keywords: Option<&Dict<'_>>) -> PyResult<Recipe> {
+        let own = |keywords: &Dict<'_>| Ok::<_, PyErr>(own(keywords)?.cast_into::<PyDict>()?.unbind());
         Ok(Recipe { keywords: keywords.map(own).transpose()?, ..self })
     }
 
@@ -79,7 +79,7 @@ impl Recipe {
     }
 
     /// What equal objects have equal, and can be hashed.
-    pub fn key<'py>(&self, class: Bound<'py, PyType>) -> PyResult<Bound<'py, PyAny>> {
+    pub fn key<'py>(&self, class: Bound<'py, PyType>) -> PyResult<Object<'py>> {
         let py = class.py();
         py.import("viscocontact._values")?.call_method1("key", (class, self.maker, &self.arguments, &self.keywords))
     }
@@ -95,7 +95,7 @@ impl Recipe {
 /// An argument that a recipe keeps as it was: of an iterator its values, of an array a copy.
 #[derive(IntoPyObject)]
 #[pyo3(transparent)]
-pub struct Value<'py>(pub Bound<'py, PyAny>);
+pub struct Value<'py>(pub Object<'py>);
 
 impl<'py> FromPyObject<'_, 'py> for Value<'py> {
     type Error = PyErr;
@@ -106,15 +106,15 @@ impl<'py> FromPyObject<'_, 'py> for Value<'py> {
 }
 
 impl<'py> std::ops::Deref for Value<'py> {
-    type Target = Bound<'py, PyAny>;
+    type Target = Object<'py>;
 
-    fn deref(&self) -> &Bound<'py, PyAny> {
+    fn deref(&self) -> &Object<'py> {
         &self.0
     }
 }
 
 /// A value of a call as it is now: what the caller may change later is copied, down to the entries of sequences.
-fn own<'py>(value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+fn own<'py>(value: &Object<'py>) -> PyResult<Object<'py>> {
     // most are numbers, and objects that do not change
     if value.is_exact_instance_of::<PyFloat>() || value.is_exact_instance_of::<PyInt>() {
         return Ok(value.clone());
@@ -135,8 +135,8 @@ pub fn again<'py>(
     class: Bound<'py, PyType>,
     maker: &str,
     arguments: Bound<'py, PyTuple>,
-    keywords: Option<Bound<'py, PyDict>>,
-) -> PyResult<Bound<'py, PyAny>> {
+    keywords: Option<Dict<'py>>,
+) -> PyResult<Object<'py>> {
     let maker = if maker.is_empty() { class.into_any() } else { class.getattr(maker)? };
     maker.call(arguments, keywords.as_ref())
 }

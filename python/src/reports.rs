@@ -14,37 +14,24 @@ pub struct StepReport(pub ct::StepReport);
 
 #[pymethods]
 impl StepReport {
-    /// The numbers behind the warnings, None where the scene is far from the limit: "max_slope", "compression", "cells_across", "cells_in_wave", "periods",
-    /// "cells_in_zone", "modulus" [Pa], "touch" [m], "unmeasured" and "wake".
-    #[getter]
-    fn figures<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        figures(py, &self.0.figures)
-    }
-
     fn __repr__(&self) -> String {
         self.0.to_string()
     }
 }
 
 /// The numbers behind warnings, by their names.
-pub fn figures<'py>(py: Python<'py>, of: &ct::Figures) -> PyResult<Bound<'py, PyDict>> {
+pub fn figures<'py>(py: Python<'py>, of: &ct::Figures) -> PyResult<Dict<'py>> {
     Ok(dict! { py;
-        "max_slope": of.max_slope,
-        "compression": of.compression,
-        "cells_across": of.cells_across,
-        "cells_in_wave": of.cells_in_wave,
-        "periods": of.periods,
-        "cells_in_zone": of.cells_in_zone,
-        "modulus": of.modulus,
-        "touch": of.touch,
-        "unmeasured": of.unmeasured,
-        "wake": of.wake,
+        of { max_slope, compression, cells_across, cells_in_wave, periods, cells_in_zone, modulus, touch, unmeasured, wake }
     })
 }
 
 numbers!(StepReport);
 
-getters! {StepReport, of:
+getters! {StepReport, of, py:
+    /// The numbers behind the warnings, None where the scene is far from the limit: "max_slope", "compression", "cells_across", "cells_in_wave", "periods",
+    /// "cells_in_zone", "modulus" [Pa], "touch" [m], "unmeasured" and "wake".
+    figures: PyResult<Dict<'py>> = figures(py, &of.figures);
     /// Time at the end of the step [s].
     time: f64 = of.time;
     /// Length of the step [s]; 0 for a jump of the load.
@@ -89,13 +76,8 @@ pub struct BodyState(pub ct::BodyState);
 #[pymethods]
 impl BodyState {
     fn __repr__(&self) -> String {
-        let of = &self.0;
-        format!(
-            "BodyState(force={} N, approach={} m, contact_cells={})",
-            digits(of.force),
-            digits(of.approach),
-            of.contact_cells
-        )
+        let [force, approach] = [self.0.force, self.0.approach].map(digits);
+        format!("BodyState(force={force} N, approach={approach} m, contact_cells={})", self.0.contact_cells)
     }
 }
 

@@ -6,26 +6,21 @@ use viscocontact::rheology::{self as rh, CreepSpectrum, Rheology as Body};
 use crate::arrays::{pairs, values};
 use crate::prelude::*;
 
-/// The shear creep of a linear viscoelastic body: J(t), the strain after a unit shear stress [1/Pa].
-///
-/// Its static methods make the models; moduli are in Pa, times in s, compliances in 1/Pa. A `Material` adds the response in volume.
-///
-/// >>> rubber = Rheology.prony(1e6, [(5e6, 1e-3), (2e6, 0.1)])
-/// >>> rubber.creep_compliance(0.0) * 8e6
-/// 1.0
-/// >>> rubber
-/// Rheology.prony(1000000.0, [(5000000.0, 0.001), (2000000.0, 0.1)])
-#[pyclass(frozen, weakref, module = "viscocontact")]
-pub struct Rheology {
-    pub body: Arc<dyn Body>,
-    recipe: Recipe,
+made! {
+    /// The shear creep of a linear viscoelastic body: J(t), the strain after a unit shear stress [1/Pa].
+    ///
+    /// Its static methods make the models; moduli are in Pa, times in s, compliances in 1/Pa. A `Material` adds the response in volume.
+    ///
+    /// >>> rubber = Rheology.generalized_maxwell(1e6, [(5e6, 1e-3), (2e6, 0.1)])
+    /// >>> rubber.creep_compliance(0.0) * 8e6
+    /// 1.0
+    /// >>> rubber
+    /// Rheology.generalized_maxwell(1000000.0, [(5000000.0, 0.001), (2000000.0, 0.1)])
+    #[pyclass(frozen, weakref, module = "viscocontact")]
+    Rheology(pub body: Arc<dyn Body>) of impl Body + 'static => Arc::new
 }
 
 impl Rheology {
-    pub fn by(recipe: Recipe, body: impl Body + 'static) -> Rheology {
-        Rheology { body: Arc::new(body), recipe }
-    }
-
     fn spectrum(&self) -> PyResult<CreepSpectrum> {
         self.body.creep_spectrum().ok_or_else(|| {
             PyValueError::new_err("this rheology has no exact exponential series: take fitted(first, last, tolerance)")
@@ -61,9 +56,9 @@ makers! {Rheology, py:
     burgers(g: f64, relaxation_time: f64, g_k: f64, retardation_time: f64) =
         rh::Burgers::with_times((g, relaxation_time), (g_k, retardation_time));
 
-    /// A Prony series G(t) = G∞ + Σ G_k exp(−t/τ_k): the `equilibrium` modulus [Pa] (0 for a fluid) and rows (modulus [Pa], relaxation
-    /// time [s]).
-    prony(equilibrium: f64, terms: Value<'_>) =
+    /// Springs and dashpots beside each other, G(t) = G∞ + Σ G_k exp(−t/τ_k): the `equilibrium` modulus [Pa] (0 for a fluid) and rows
+    /// (modulus [Pa], relaxation time [s]). Shares in place of moduli: `prony`.
+    generalized_maxwell(equilibrium: f64, terms: Value<'_>) =
         rh::GeneralizedMaxwell::new(equilibrium, &pairs("terms", &terms)?);
 
     /// A creep series J(t) = J_g + φ t + Σ J_k (1 − exp(−t/λ_k)): `glassy` compliance [1/Pa], `fluidity` [1/(Pa·s)], rows (compliance
@@ -98,11 +93,12 @@ makers! {Rheology, py:
     slow_creep(glassy: f64, strength: f64, time: f64, exponent: f64) =
         rh::SlowCreep::new(glassy, strength, time, exponent);
 
-    /// A Prony series as finite-element programs write it: the `glassy` modulus [Pa] and rows (share g_k, relaxation time [s]).
-    prony_of_glassy(glassy: f64, terms: Value<'_>) = rh::GeneralizedMaxwell::prony(glassy, &shares(&terms)?);
+    /// A Prony series as finite-element programs write it: the `glassy` modulus [Pa] and rows (share of it, relaxation time [s]), of shares
+    /// that add up to 1 at most. Moduli in place of shares: `generalized_maxwell`.
+    prony(glassy: f64, terms: Value<'_>) = rh::GeneralizedMaxwell::prony(glassy, &shares(&terms)?);
 
-    /// A Prony series relative to the `rubbery` modulus [Pa]: rows (share g_k, relaxation time [s]).
-    prony_of_rubbery(rubbery: f64, terms: Value<'_>) =
+    /// The same relative to the `rubbery` modulus [Pa]: rows (modulus over it, relaxation time [s]).
+    prony_long_term(rubbery: f64, terms: Value<'_>) =
         rh::GeneralizedMaxwell::prony_long_term(rubbery, &shares(&terms)?);
 }
 
@@ -122,40 +118,32 @@ impl Rheology {
         Ok(Rheology::by(Recipe::new(py, "function", (creep_compliance.clone(),))?.calling([creep_compliance]), made))
     }
 
-    /// This body fitted by an exponential series over the times from `first` to `last` [s] within a relative error.
-    #[pyo3(signature = (first, last, tolerance=1e-4))]
-    fn fitted(slf: Bound<'_, Self>, first: f64, last: f64, tolerance: f64) -> PyResult<Rheology> {
-        let (py, body) = (slf.py(), Arc::clone(&slf.get().body));
-        let series = free(py, || body.series(first..=last, tolerance)).or_raise()?;
-        Ok(Rheology::by(Recipe::new(py, "fitted", (slf, first, last, tolerance))?, series))
-    }
-
     /// Checks the laws of creep at ascending times [s]: not negative, not decreasing, concave, and as its series. Raises ValueError with the
     /// first violation.
     ///
     /// >>> Rheology.function(lambda t: 1e-6 * (1 + t**2)).check([0.0, 1.0, 2.0, 3.0])
     /// Traceback (most recent call last):
     /// ValueError: ...
-    fn check(&self, py: Python<'_>, times: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn check(&self, py: Python<'_>, times: &Object<'_>) -> PyResult<()> {
         let times = column("times", times)?;
         let verdict = free(py, || rh::laws::all(&*self.body, &times));
         no_violation(self.body.failure(), verdict)
     }
 
     /// J(t) [1/Pa] at times [s]: a float, or an array of the shape of `t`.
-    fn creep_compliance<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    fn creep_compliance<'py>(&self, t: &Object<'py>) -> PyResult<Object<'py>> {
         mapped("t", t, FROM_ZERO, |t| self.body.creep_compliance(t), || self.body.failure())
     }
 
     /// G(t) [Pa] at times [s], without an immediate dashpot. Raises ValueError without an exponential series (`fitted`).
-    fn relaxation_modulus<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    fn relaxation_modulus<'py>(&self, t: &Object<'py>) -> PyResult<Object<'py>> {
         let spectrum = self.spectrum()?.relaxation();
         mapped("t", t, FROM_ZERO, |t| spectrum.modulus(t), never)
     }
 
     /// G*(ω) = G′ + i G″ [Pa] at angular frequencies [rad/s]: a complex number, or an array of the shape of `omega`. G*(−ω) is the complex
     /// conjugate of G*(ω). Raises ValueError without an exponential series (`fitted`).
-    fn complex_modulus<'py>(&self, py: Python<'py>, omega: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    fn complex_modulus<'py>(&self, py: Python<'py>, omega: &Object<'py>) -> PyResult<Object<'py>> {
         let spectrum = self.spectrum()?;
         let nan = Complex64::new(f64::NAN, f64::NAN);
         let modulus = |omega: f64| if omega.is_nan() { nan } else { spectrum.complex_modulus(omega) };
@@ -165,6 +153,15 @@ impl Rheology {
         // of a number, a number
         if shape.is_empty() { moduli.get_item(()) } else { Ok(moduli) }
     }
+}
+
+changes! {Rheology, slf:
+    /// This body fitted by an exponential series over the times from `first` to `last` [s] within a relative error.
+    #[pyo3(signature = (first, last, tolerance=1e-4))]
+    fitted(first: f64, last: f64, tolerance: f64) = {
+        let body = &slf.get().body;
+        free(slf.py(), || body.series(first..=last, tolerance))
+    };
 }
 
 getters! {Rheology.body, of:
@@ -179,8 +176,6 @@ getters! {Rheology.body, of:
     fit_report: Option<String> = of.fit_report().map(|report| report.to_string());
 }
 
-made_by_calls!(Rheology);
-
 /// Glassy compliance, fluidity, and compliances with their retardation times.
 pub type Series = (f64, f64, Vec<(f64, f64)>);
 
@@ -188,6 +183,6 @@ pub fn series(of: &CreepSpectrum) -> Series {
     (of.glassy(), of.fluidity(), of.terms().to_vec())
 }
 
-fn shares(terms: &Bound<'_, PyAny>) -> PyResult<Vec<rh::PronyTerm>> {
+fn shares(terms: &Object<'_>) -> PyResult<Vec<rh::PronyTerm>> {
     Ok(pairs("terms", terms)?.into_iter().map(|(share, time)| rh::PronyTerm { share, time }).collect())
 }

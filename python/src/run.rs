@@ -11,22 +11,10 @@ use crate::held::Led;
 use crate::prelude::*;
 
 /// The contact that a run leads.
-#[derive(IntoPyObjectRef)]
+#[derive(FromPyObject, IntoPyObjectRef)]
 pub enum Of {
     Space(Py<ViscoelasticContact>),
     States(Py<StatesContact>),
-}
-
-impl From<Py<ViscoelasticContact>> for Of {
-    fn from(contact: Py<ViscoelasticContact>) -> Of {
-        Of::Space(contact)
-    }
-}
-
-impl From<Py<StatesContact>> for Of {
-    fn from(contact: Py<StatesContact>) -> Of {
-        Of::States(contact)
-    }
 }
 
 /// A contact on its way along a load: an iterator over the reports of its steps, made by `follow`.
@@ -138,13 +126,7 @@ impl Run {
     /// >>> len(run.events[0]) >= 3 and len(run.events[1]) >= 3
     /// True
     #[pyo3(signature = (quantity, *, up=None, down=None))]
-    fn stop_when(
-        &self,
-        py: Python<'_>,
-        quantity: &Bound<'_, PyAny>,
-        up: Option<f64>,
-        down: Option<f64>,
-    ) -> PyResult<()> {
+    fn stop_when(&self, py: Python<'_>, quantity: &Object<'_>, up: Option<f64>, down: Option<f64>) -> PyResult<()> {
         let crossing = match (up, down) {
             (Some(value), None) if value.is_finite() => Crossing::Up(value),
             (None, Some(value)) if value.is_finite() => Crossing::Down(value),
@@ -205,7 +187,7 @@ impl Run {
     /// >>> curve = contact.follow(Load.force(1.0), 10.0, sample_at=[1.0, 2.0, 5.0]).table()
     /// >>> curve["time"]
     /// array([1., 2., 5.])
-    fn table<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+    fn table<'py>(&self, py: Python<'py>) -> PyResult<Dict<'py>> {
         let mut columns: [Vec<f64>; 4] = Default::default();
         while self.next(py)?.is_some() {
             let passed = on_run!(self, py, run => free(py, || if self.sampled {
@@ -227,12 +209,10 @@ impl Run {
 
     /// A dict of the "steps" taken, "time" [s], its end "until" [s], "share_of_time" and "share_of_decades" that are over.
     #[getter]
-    fn progress<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+    fn progress<'py>(&self, py: Python<'py>) -> PyResult<Dict<'py>> {
         let at = on_run!(self, py, run => run.progress());
         Ok(dict! { py;
-            "steps": at.steps,
-            "time": at.time,
-            "until": at.until,
+            at { steps, time, until },
             "share_of_time": at.share_of_time(),
             "share_of_decades": at.share_of_decades(),
         })
@@ -246,19 +226,18 @@ impl Run {
 
     /// Where the error of a run in space comes from, relative: "time", "pressure", "solver", and of the mesh "mesh_approach",
     /// "mesh_max_pressure", "mesh_area"; None where there is no estimate. "text" says so in words.
-    fn error_budget<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+    fn error_budget<'py>(&self, py: Python<'py>) -> PyResult<Dict<'py>> {
         let Of::Space(contact) = &self.of else {
             return Err(PyTypeError::new_err("only runs in space have an error budget"));
         };
         let contact = Shared::try_from(contact.bind(py))?;
         let budget = contact.held.run_ref(self.number)?.error_budget();
+        let mesh = budget.mesh.as_ref();
         Ok(dict! { py;
-            "time": budget.time,
-            "pressure": budget.pressure,
-            "solver": budget.solver,
-            "mesh_approach": budget.mesh.as_ref().map(|mesh| mesh.approach),
-            "mesh_max_pressure": budget.mesh.as_ref().and_then(|mesh| mesh.max_pressure),
-            "mesh_area": budget.mesh.as_ref().map(|mesh| mesh.area),
+            budget { time, pressure, solver },
+            "mesh_approach": mesh.map(|mesh| mesh.approach),
+            "mesh_max_pressure": mesh.and_then(|mesh| mesh.max_pressure),
+            "mesh_area": mesh.map(|mesh| mesh.area),
             "text": budget.to_string(),
         })
     }
@@ -276,7 +255,7 @@ type Quantity<C> = Box<dyn Fn(&C) -> f64 + Send + Sync>;
 type Named<C> = (&'static str, fn(&C) -> f64);
 
 /// The quantity of a name, or of a function of the contact.
-fn watched<C: Led>(given: &Bound<'_, PyAny>, recipe: &Arc<Recipe>) -> PyResult<(Quantity<C>, Option<Function>)> {
+fn watched<C: Led>(given: &Object<'_>, recipe: &Arc<Recipe>) -> PyResult<(Quantity<C>, Option<Function>)> {
     if let Ok(function) = given.extract::<Function>() {
         let (called, recipe) = (function.clone(), Arc::clone(recipe));
         let value = move |contact: &C| {
@@ -345,13 +324,9 @@ impl Sample {
     /// With `fields_to` how exact the pressure is: "error" in time, relative (None without an estimate), and the "elastic_contacts" and
     /// "convolutions" that it took.
     #[getter]
-    fn field<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
+    fn field<'py>(&self, py: Python<'py>) -> PyResult<Option<Dict<'py>>> {
         let Some(of) = self.field else { return Ok(None) };
-        Ok(Some(dict! { py;
-            "error": of.error,
-            "elastic_contacts": of.elastic_contacts,
-            "convolutions": of.convolutions,
-        }))
+        Ok(Some(dict! { py; of { error, elastic_contacts, convolutions } }))
     }
 
     fn __repr__(&self) -> String {

@@ -7,7 +7,7 @@ use crate::attraction::Attraction;
 use crate::prelude::*;
 
 /// Changes a setting if it is one of the keyword `name`.
-fn setting(settings: Settings, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Option<Settings>> {
+fn setting(settings: Settings, name: &str, value: &Object<'_>) -> PyResult<Option<Settings>> {
     let text = || value.extract::<String>();
     Ok(Some(match name {
         "tolerance" => settings.with_tolerance(value.extract()?),
@@ -28,7 +28,7 @@ fn setting(settings: Settings, name: &str, value: &Bound<'_, PyAny>) -> PyResult
 }
 
 /// The settings of keywords, each of which must be one.
-pub fn settings(base: Settings, given: &Bound<'_, PyDict>) -> PyResult<Settings> {
+pub fn settings(base: Settings, given: &Dict<'_>) -> PyResult<Settings> {
     given.iter().try_fold(base, |settings, (name, value)| {
         let name: String = name.extract()?;
         setting(settings, &name, &value)?.ok_or_else(|| unexpected("the contact problem", &name, OPTIONS))
@@ -53,9 +53,9 @@ pub fn unexpected(of: &str, name: &str, known: &str) -> PyErr {
 /// A builder of the parts: of the required ones, and of `options` by the names of the crate. A value of None is the default.
 pub fn builder(
     grid: &Grid,
-    geometry: &Bound<'_, PyAny>,
+    geometry: &Object<'_>,
     material: &Material,
-    options: Option<&Bound<'_, PyDict>>,
+    options: Option<&Dict<'_>>,
 ) -> PyResult<Builder> {
     let shapes = geometries(&grid.0, geometry)?;
     let [first, others @ ..] = &shapes[..] else {
@@ -82,7 +82,7 @@ pub fn builder(
             "attraction" => builder.attraction(value.cast::<Attraction>()?.get().law.clone()),
             "temperature" => builder.temperature(value.cast::<TemperatureHistory>()?.get().history.clone()),
             "times" => {
-                let (first, last): (Bound<'_, PyAny>, f64) = value.extract()?;
+                let (first, last): (Object<'_>, f64) = value.extract()?;
                 match first.extract::<f64>() {
                     Ok(first) if first.is_nan() || first >= last => {
                         let text =
@@ -111,19 +111,10 @@ pub fn builder(
 pub fn memory<'py>(
     py: Python<'py>,
     grid: &Grid,
-    geometry: &Bound<'py, PyAny>,
+    geometry: &Object<'py>,
     material: &Material,
-    options: Option<&Bound<'py, PyDict>>,
-) -> PyResult<Bound<'py, PyDict>> {
-    use crate::errors::OrRaise;
+    options: Option<&Dict<'py>>,
+) -> PyResult<Dict<'py>> {
     let memory: vc::contact::Memory = builder(grid, geometry, material, options)?.memory().or_raise()?;
-    Ok(dict! { py;
-        "computed_cells": memory.computed_cells,
-        "grid": memory.grid,
-        "state": memory.state,
-        "history": memory.history,
-        "solver": memory.solver,
-        "kernel": memory.kernel,
-        "total": memory.total(),
-    })
+    Ok(dict! { py; memory { computed_cells, grid, state, history, solver, kernel }, "total": memory.total() })
 }

@@ -6,19 +6,18 @@ use viscocontact as vc;
 use crate::arrays::{cell_values, number};
 use crate::prelude::*;
 
-/// A shape: the gap between the undeformed bodies over the plane of contact, `+inf` where there is nothing to touch.
-///
-/// Its static methods make shapes; `+` superposes them, `shifted` moves them. Lengths are in metres.
-///
-/// >>> ball = Shape.sphere(10e-3)
-/// >>> rough_ball = ball + Shape.wavy(1e-6, 0.2e-3).shifted((0.1e-3, 0))
-/// >>> ball.gap(Grid(2, 2e-3))
-/// array([[2.5e-05, 2.5e-05],
-///        [2.5e-05, 2.5e-05]])
-#[pyclass(frozen, subclass, weakref, module = "viscocontact")]
-pub struct Shape {
-    pub geometry: Arc<dyn Geometry>,
-    recipe: Recipe,
+made! {
+    /// A shape: the gap between the undeformed bodies over the plane of contact, `+inf` where there is nothing to touch.
+    ///
+    /// Its static methods make shapes; `+` superposes them, `shifted` moves them. Lengths are in metres.
+    ///
+    /// >>> ball = Shape.sphere(10e-3)
+    /// >>> rough_ball = ball + Shape.wavy(1e-6, 0.2e-3).shifted((0.1e-3, 0))
+    /// >>> ball.gap(Grid(2, 2e-3))
+    /// array([[2.5e-05, 2.5e-05],
+    ///        [2.5e-05, 2.5e-05]])
+    #[pyclass(frozen, subclass, weakref, module = "viscocontact")]
+    Shape(pub geometry: Arc<dyn Geometry>) of impl Geometry + 'static => Arc::new
 }
 
 impl Shape {
@@ -32,11 +31,7 @@ impl Shape {
         Ok(Shape { geometry, recipe: Recipe::new(py, maker, arguments)? })
     }
 
-    fn by(recipe: Recipe, geometry: impl Geometry + 'static) -> Shape {
-        Shape { geometry: Arc::new(geometry), recipe }
-    }
-
-    pub fn with_keywords(self, keywords: &Bound<'_, PyDict>) -> PyResult<Shape> {
+    pub fn with_keywords(self, keywords: &Dict<'_>) -> PyResult<Shape> {
         Ok(Shape { recipe: self.recipe.with_keywords(Some(keywords))?, ..self })
     }
 }
@@ -125,7 +120,7 @@ impl Shape {
     /// >>> Shape.gap_on(grid, (x1**2 + x2**2) / 2e-2)
     /// Shape.gap_on(Grid((4, 4), (0.001, 0.001)), <array [4, 4]>)
     #[staticmethod]
-    fn gap_on(py: Python<'_>, grid: Bound<'_, Grid>, gap: Bound<'_, PyAny>) -> PyResult<Shape> {
+    fn gap_on(py: Python<'_>, grid: Bound<'_, Grid>, gap: Object<'_>) -> PyResult<Shape> {
         let on = grid.get().0.clone();
         let values = crate::arrays::field("gap", &gap, on.cells())?;
         // as it was read: another thread may write into the array
@@ -133,22 +128,9 @@ impl Shape {
         Shape::made(py, "gap_on", (grid, gap), Arc::new(GapOnCells { grid: on, gap: values }))
     }
 
-    /// This shape with its origin at the point `by` [m].
-    fn shifted(slf: Bound<'_, Self>, by: [f64; 2]) -> PyResult<Shape> {
-        let shape = geo::Shifted::new(Arc::clone(&slf.get().geometry), by).or_raise()?;
-        Shape::made(slf.py(), "shifted", (slf, by), Arc::new(shape))
-    }
-
-    /// The part of this shape within half a `period` [m] of the origin, repeated along x1 and x2; `inf` along an axis without
-    /// repetition.
-    fn repeated(slf: Bound<'_, Self>, period: [f64; 2]) -> PyResult<Shape> {
-        let shape = geo::Repeated::new(Arc::clone(&slf.get().geometry), period).or_raise()?;
-        Shape::made(slf.py(), "repeated", (slf, period), Arc::new(shape))
-    }
-
     fn __add__(slf: Bound<'_, Self>, other: Bound<'_, Shape>) -> PyResult<Shape> {
         let sum = geo::Sum::new(Arc::clone(&slf.get().geometry), Arc::clone(&other.get().geometry));
-        Shape::made(slf.py(), "__add__", (slf, other), Arc::new(sum))
+        Ok(Shape::by(Recipe::new(slf.py(), "__add__", (slf, other))?, sum))
     }
 
     /// Arrays leave `+` to shapes, which refuse it: an array has no grid.
@@ -157,7 +139,7 @@ impl Shape {
     const ARRAY_UFUNC: Option<bool> = None;
 
     /// `sum` of shapes begins with 0.
-    fn __radd__<'py>(slf: Bound<'py, Self>, other: &Bound<'py, PyAny>) -> PyResult<Bound<'py, Shape>> {
+    fn __radd__<'py>(slf: Bound<'py, Self>, other: &Object<'py>) -> PyResult<Bound<'py, Shape>> {
         let needed = "a Shape is added to a Shape: Shape.gap_on(grid, array) makes one of an array";
         if number(other) == Some(0.0) { Ok(slf) } else { Err(PyTypeError::new_err(needed)) }
     }
@@ -178,10 +160,17 @@ impl Shape {
     }
 }
 
-made_by_calls!(Shape);
+changes! {Shape, slf:
+    /// This shape with its origin at the point `by` [m].
+    shifted(by: [f64; 2]) = geo::Shifted::new(Arc::clone(&slf.get().geometry), by);
+
+    /// The part of this shape within half a `period` [m] of the origin, repeated along x1 and x2; `inf` along an axis without
+    /// repetition.
+    repeated(period: [f64; 2]) = geo::Repeated::new(Arc::clone(&slf.get().geometry), period);
+}
 
 /// The shapes of the rigid bodies of a contact: a shape, an array of the gap on the grid, or a sequence of shapes.
-pub fn geometries(grid: &vc::Grid, given: &Bound<'_, PyAny>) -> PyResult<Vec<Arc<dyn Geometry>>> {
+pub fn geometries(grid: &vc::Grid, given: &Object<'_>) -> PyResult<Vec<Arc<dyn Geometry>>> {
     if let Ok(shape) = given.cast::<Shape>() {
         return Ok(vec![Arc::clone(&shape.get().geometry)]);
     }

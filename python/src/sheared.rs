@@ -3,6 +3,7 @@
 use viscocontact::states as st;
 
 use crate::prelude::*;
+use crate::states_contact::on_grid;
 
 /// A contact with the friction of keywords.
 pub fn rubbing(
@@ -39,26 +40,9 @@ impl StatesContact {
         free(py, || contact.step_sheared(dt, load, along)).or_raise().map(StepReport)
     }
 
-    /// Where the work along the surface went since the contact was made [J]: "work" = "slip" + "stored" + "creep".
-    #[getter]
-    fn lateral_work<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let of = slf.get()?.lateral_work();
-        Ok(dict! { py; "work": of.work, "slip": of.slip, "stored": of.stored, "creep": of.creep })
-    }
-
-    /// The traction along the surface [Pa], of the shape of the grid, from the states of a sweep with `keep_pressures`.
-    #[getter]
-    fn shear<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Array<'py>> {
-        let contact = slf.get()?;
-        let shear = free(py, || contact.shear()).or_raise()?;
-        to_array(py, shear, &slf.cells()?)
-    }
-
     /// The traction along the surface as a sum of elastic pressures: rows (level [m²], traction [Pa]), as of `tractions`.
     fn shear_tractions<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Array<'py>> {
-        let rows: Vec<f64> = slf.get()?.shear_tractions().flat_map(|(level, traction)| [level, traction]).collect();
-        let n = rows.len() / 2;
-        to_array(py, rows, &[n, 2])
+        rows_of(py, slf.get()?.shear_tractions())
     }
 
     /// How the approach of the load point would change now, ∂ω/∂g, had each cell been higher by a little from the start: of the shape of
@@ -76,12 +60,19 @@ impl StatesContact {
     fn approach_gradient<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Array<'py>> {
         let (contact, cancel) = (slf.get()?, &*slf.cancel);
         let gradient = interruptible(py, true, cancel, || contact.approach_gradient_unless(cancel))?;
-        to_array(py, gradient, &slf.cells()?)
+        on_grid(py, contact, gradient)
     }
 }
 
-getters! {by get StatesContact, of:
-    /// Force along the surface [N]; 0 without friction.
+getters! {by get StatesContact, of, py:
+    /// Where the work along the surface went since the contact was made [J]: "work" = "slip" + "stored" + "creep".
+    lateral_work: Dict<'py> = {
+        let of = of.lateral_work();
+        dict! { py; of { work, slip, stored, creep } }
+    };
+    /// The traction along the surface [Pa], of the shape of the grid, from the states of a sweep with `keep_pressures`.
+    shear: Array<'py> = on_grid(py, of, free(py, || of.shear()).or_raise()?)?;
+    /// Force along the surface that moves the body [N]; 0 without friction.
     lateral_force: f64 = of.lateral_force();
     /// Displacement of the body along the surface [m], how far it has slid included.
     lateral_displacement: f64 = of.lateral_displacement();

@@ -15,7 +15,7 @@ pub fn complex(function: &Function, omega: f64, kept: &Kept) -> Complex64 {
 }
 
 /// A velocity along x1, or along x1 and x2.
-pub fn velocity(given: &Bound<'_, PyAny>) -> PyResult<[f64; 2]> {
+pub fn velocity(given: &Object<'_>) -> PyResult<[f64; 2]> {
     let along = number(given).map(|speed| [speed, 0.0]);
     let needed = "velocity: a speed along x1, or a pair along x1 and x2 [m/s], is needed";
     along.map_or_else(|| given.extract(), Ok).map_err(|_: PyErr| PyTypeError::new_err(needed))
@@ -29,10 +29,10 @@ impl Shown for SteadySliding {
 }
 
 /// The state of a steady motion, in numbers. `lateral_force` is the integral of the pressure times the slope of the deformed surface, which converges fast
-/// with the cells; `Fields.lateral_force(shape)` takes the slopes of the shape instead, and agrees where cells resolve the contact.
+/// with the cells; `Fields.slope_force(shape)` takes the slopes of the shape instead, and agrees where cells resolve the contact.
 ///
 /// >>> grid = Grid(32, 1e-3)
-/// >>> rubber = Material(Rheology.prony(1e6, [(1e7, 1e-4)]))
+/// >>> rubber = Material(Rheology.generalized_maxwell(1e6, [(1e7, 1e-4)]))
 /// >>> sliding = SteadySliding(grid, Shape.wavy((2e-6, 2e-6), (1e-3, 1e-3)), rubber, kernel=InfluenceKernel.periodic(grid))
 /// >>> report = sliding.at(0.5, Load.force(0.02))
 /// >>> abs(report.dissipation / 0.5 / report.lateral_force[0] - 1) < 1e-9
@@ -44,32 +44,26 @@ pub struct SlidingReport(sl::SlidingReport);
 impl SlidingReport {
     fn __repr__(&self) -> String {
         let of = &self.0;
+        let ([v1, v2], numbers) = (of.velocity.map(digits), [of.force, of.friction(), of.contact_area].map(digits));
+        let [force, friction, area] = numbers;
         format!(
-            "SlidingReport(velocity={:?} m/s, force={} N, friction={}, contact_area={} m²)",
-            of.velocity,
-            digits(of.force),
-            digits(of.friction()),
-            digits(of.contact_area)
+            "SlidingReport(velocity=({v1}, {v2}) m/s, force={force} N, friction={friction}, contact_area={area} m²)"
         )
-    }
-
-    /// The numbers behind the warnings, as those of a step.
-    #[getter]
-    fn figures<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        figures(py, &self.0.figures)
     }
 }
 
 numbers!(SlidingReport);
 
-getters! {SlidingReport, of:
+getters! {SlidingReport, of, py:
+    /// The numbers behind the warnings, as those of a step.
+    figures: PyResult<Dict<'py>> = figures(py, &of.figures);
     /// Velocity of the indenter over the bodies [m/s].
     velocity: (f64, f64) = of.velocity.into();
     /// Normal force [N].
     force: f64 = of.force;
     /// Approach [m].
     approach: f64 = of.approach;
-    /// Force that keeps the indenter moving, along x1 and x2 [N].
+    /// Force along x1 and x2 [N] that moves the body.
     lateral_force: (f64, f64) = of.lateral_force.into();
     /// The coefficient of friction: lateral force against the motion over normal force.
     friction: f64 = of.friction();
@@ -103,7 +97,7 @@ getters! {SlidingReport, of:
 ///     What a counter-body that creeps does.
 ///
 /// >>> grid = Grid(32, 1e-3)
-/// >>> rubber = Material(Rheology.prony(1e6, [(1e7, 1e-4)]))
+/// >>> rubber = Material(Rheology.generalized_maxwell(1e6, [(1e7, 1e-4)]))
 /// >>> road = Shape.wavy((2e-6, 2e-6), (1e-3, 1e-3))
 /// >>> sliding = SteadySliding(grid, road, rubber, kernel=InfluenceKernel.periodic(grid))
 /// >>> sliding.at((0.5, 0.0), Load.force(0.02)).friction > 0
@@ -114,9 +108,7 @@ pub struct SteadySliding {
     cancel: Arc<AtomicBool>,
     /// What the modulus raised.
     kept: Kept,
-    /// What the motion may call, and the objects that show the functions of its parts.
-    modulus: Option<Function>,
-    parts: Py<PyTuple>,
+    recipe: Recipe,
     has_state: bool,
 }
 
@@ -131,12 +123,12 @@ impl SteadySliding {
     fn new(
         py: Python<'_>,
         grid: Bound<'_, Grid>,
-        geometry: Bound<'_, PyAny>,
+        geometry: Object<'_>,
         material: Bound<'_, Material>,
         base: Option<Bound<'_, Material>>,
         modulus: Option<Function>,
         counter_motion: Option<&str>,
-        options: Option<&Bound<'_, PyDict>>,
+        options: Option<&Dict<'_>>,
     ) -> PyResult<SteadySliding> {
         let mut builder = builder(grid.get(), &geometry, material.get(), options)?;
         if let Some(name) = counter_motion {
@@ -156,23 +148,27 @@ impl SteadySliding {
         };
         let cancel = Arc::<AtomicBool>::default();
         let sliding = kept.raise_or(sliding.or_raise())?.cancelled_by(Arc::clone(&cancel));
-        let parts = (geometry, material, base, options).into_pyobject(py)?.unbind();
-        Ok(SteadySliding { sliding, cancel, kept, modulus, parts, has_state: false })
+        let (keywords, called) = (PyDict::new(py), modulus.iter().cloned().collect::<Vec<_>>());
+        options.map_or(Ok(()), |options| keywords.update(options.as_mapping()))?;
+        keywords.set_item("base", base)?;
+        keywords.set_item("modulus", modulus)?;
+        keywords.set_item("counter_motion", counter_motion)?;
+        let recipe = Recipe::new(py, "", (grid, geometry, material))?.with_keywords(Some(&keywords))?.calling(called);
+        Ok(SteadySliding { sliding, cancel, kept, recipe, has_state: false })
+    }
+
+    /// The motion before its first state.
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        Shared::try_from(slf)?.recipe.reduce(slf.get_type())
     }
 
     fn __traverse__(&self, visit: PyVisit<'_>) -> Traversed {
-        visit.call(&self.parts)?;
-        self.modulus.iter().try_for_each(|function| visit.call(&*function.0))
+        self.recipe.traverse(&visit)
     }
 
     /// The state under a load, a force or an approach, of the indenter that moves with `velocity` [m/s]: along x1, or a pair along x1 and
     /// x2. Ctrl-C ends the search within an iteration, and keeps the state found last.
-    fn at(
-        mut slf: Taken<'_, Self>,
-        py: Python<'_>,
-        velocity: &Bound<'_, PyAny>,
-        load: &Load,
-    ) -> PyResult<SlidingReport> {
+    fn at(mut slf: Taken<'_, Self>, py: Python<'_>, velocity: &Object<'_>, load: &Load) -> PyResult<SlidingReport> {
         let (velocity, load) = (self::velocity(velocity)?, load.load);
         let SteadySliding { sliding, cancel, kept, has_state, .. } = &mut *slf;
         let found = kept.raise_or(interruptible(py, true, cancel, || sliding.at(velocity, load)));
@@ -190,8 +186,8 @@ impl SteadySliding {
     fn sweep(
         mut slf: Taken<'_, Self>,
         py: Python<'_>,
-        velocities: &Bound<'_, PyAny>,
-        loads: &Bound<'_, PyAny>,
+        velocities: &Object<'_>,
+        loads: &Object<'_>,
         law: Option<&TimeTemperature>,
         temperatures: Option<Vec<f64>>,
         progress: Option<Function>,
@@ -221,12 +217,7 @@ impl SteadySliding {
     /// Bytes that a contact in steady motion takes at most, before it is built. Takes the arguments of `ViscoelasticContact`.
     #[staticmethod]
     #[pyo3(signature = (grid, geometry, material, **options))]
-    fn memory(
-        grid: &Grid,
-        geometry: &Bound<'_, PyAny>,
-        material: &Material,
-        options: Option<&Bound<'_, PyDict>>,
-    ) -> PyResult<u64> {
+    fn memory(grid: &Grid, geometry: &Object<'_>, material: &Material, options: Option<&Dict<'_>>) -> PyResult<u64> {
         builder(grid, geometry, material, options)?.sliding_memory().or_raise()
     }
 
@@ -259,7 +250,7 @@ const COLUMNS: [Column; 11] = [
 /// The states of a sweep.
 ///
 /// >>> grid = Grid(32, 1e-3)
-/// >>> rubber = Material(Rheology.prony(1e6, [(1e7, 1e-4)]))
+/// >>> rubber = Material(Rheology.generalized_maxwell(1e6, [(1e7, 1e-4)]))
 /// >>> sliding = SteadySliding(grid, Shape.wavy((2e-6, 2e-6), (1e-3, 1e-3)), rubber, kernel=InfluenceKernel.periodic(grid))
 /// >>> table = sliding.sweep([0.1, 1.0], Load.force(0.02))
 /// >>> len(table), table.columns()["velocity1"]
@@ -267,11 +258,13 @@ const COLUMNS: [Column; 11] = [
 #[pyclass(frozen, module = "viscocontact")]
 pub struct SlidingTable(sl::SlidingTable);
 
+numbers!(SlidingTable);
+
 #[pymethods]
 impl SlidingTable {
     /// Arrays with a value for each state: "velocity1", "velocity2" [m/s], "temperature" [K] (NaN without), "force" [N], "approach" [m],
     /// "friction", "lateral_force1", "lateral_force2" [N], "contact_area" [m²], "mean_gap" [m] and "dissipation" [W].
-    fn columns<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+    fn columns<'py>(&self, py: Python<'py>) -> PyResult<Dict<'py>> {
         crate::arrays::columns(py, COLUMNS.map(|(name, of)| (name, self.0.states().iter().map(of).collect())))
     }
 
@@ -292,6 +285,10 @@ impl SlidingTable {
     /// Writes the table as a CSV file.
     fn write_csv(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         free(py, || self.0.write_csv(path)).or_raise()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("SlidingTable({} states)", self.__len__())
     }
 
     fn __len__(&self) -> usize {

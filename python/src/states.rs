@@ -111,11 +111,11 @@ impl ElasticStates {
     fn sweep(
         py: Python<'_>,
         grid: Bound<'_, Grid>,
-        geometry: Bound<'_, PyAny>,
+        geometry: Object<'_>,
         level: Option<f64>,
         approach: Option<f64>,
         material: Option<Bound<'_, Material>>,
-        load: Option<Bound<'_, PyAny>>,
+        load: Option<Object<'_>>,
         until: Option<f64>,
         kernel: Option<Bound<'_, InfluenceKernel>>,
         accuracy: f64,
@@ -125,7 +125,7 @@ impl ElasticStates {
         tilt: Tilts,
         temperature: Option<Bound<'_, TemperatureHistory>>,
         progress: Option<Function>,
-        settings: Option<Bound<'_, PyDict>>,
+        settings: Option<Dict<'_>>,
     ) -> PyResult<ElasticStates> {
         let reach = match (level, approach, &material, &load, until) {
             (Some(level), None, None, None, None) => st::Reach::Level(level),
@@ -143,19 +143,13 @@ impl ElasticStates {
         let [shape] = &geometries(&grid.get().0, &geometry)?[..] else {
             return Err(PyTypeError::new_err("geometry: a sweep is of one shape"));
         };
-        let mut sweep = st::Sweep::new(grid.get().0.clone(), shape).accuracy(accuracy).tilt(tilts(at, tilt)?);
-        if let Some(kernel) = &kernel {
-            sweep = sweep.kernel(Arc::clone(&kernel.get().kernel));
-        }
-        if keep_pressures {
-            sweep = sweep.keep_pressures();
-        }
-        if let Some(max_states) = max_states {
-            sweep = sweep.max_states(max_states.0);
-        }
-        if let Some(given) = &settings {
-            sweep = sweep.settings(self::settings(Settings::default().with_tolerance(1e-8), given)?);
-        }
+        let sweep = st::Sweep::new(grid.get().0.clone(), shape).accuracy(accuracy).tilt(tilts(at, tilt)?);
+        let sweep = if_given(sweep, kernel, |sweep, kernel| sweep.kernel(Arc::clone(&kernel.get().kernel)));
+        let sweep = if_given(sweep, keep_pressures.then_some(()), |sweep, ()| sweep.keep_pressures());
+        let sweep = if_given(sweep, max_states, |sweep, most| sweep.max_states(most.0));
+        let base = Settings::default().with_tolerance(1e-8);
+        let settings = settings.map(|given| self::settings(base, &given)).transpose()?;
+        let sweep = if_given(sweep, settings, st::Sweep::settings);
         let mut listener = Listener::new(progress);
         let states = free(py, || sweep.run_with(reach, |states| listener.goes_on((states.len(),))));
         let states = listener.result(states.or_raise())?;
@@ -169,27 +163,27 @@ impl ElasticStates {
     }
 
     /// Approach of the elastic contact [m] at levels [m²].
-    fn approach<'py>(&self, level: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    fn approach<'py>(&self, level: &Object<'py>) -> PyResult<Object<'py>> {
         mapped("level", level, FROM_ZERO, |level| self.states.approach(level), never)
     }
 
     /// Level [m²] of the elastic contact at approaches [m]; NaN beyond the last state.
-    fn level_at<'py>(&self, approach: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    fn level_at<'py>(&self, approach: &Object<'py>) -> PyResult<Object<'py>> {
         mapped("approach", approach, ALL, |approach| self.states.level_at(approach), never)
     }
 
     /// Contact area [m²] at levels [m²].
-    fn area<'py>(&self, level: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    fn area<'py>(&self, level: &Object<'py>) -> PyResult<Object<'py>> {
         mapped("level", level, FROM_ZERO, |level| self.states.area(level), never)
     }
 
     /// Stiffness over the contact modulus [m] at levels [m²].
-    fn stiffness<'py>(&self, level: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    fn stiffness<'py>(&self, level: &Object<'py>) -> PyResult<Object<'py>> {
         mapped("level", level, FROM_ZERO, |level| self.states.stiffness(level), never)
     }
 
     /// The states as arrays: "level" [m²], "approach" [m], "stiffness" [m], "area" [m²], "cells", "patches".
-    fn table<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+    fn table<'py>(&self, py: Python<'py>) -> PyResult<Dict<'py>> {
         let column = |of: fn(&st::ElasticState) -> f64| {
             self.states.states().iter().map(of).collect::<Vec<f64>>().into_pyarray(py)
         };
@@ -204,7 +198,7 @@ impl ElasticStates {
     }
 
     /// Conductance of the contact at levels [m²] of two conductors of `resistivities`, electrical [Ω m] in S, or thermal [m K/W] in W/K.
-    fn conductance<'py>(&self, level: &Bound<'py, PyAny>, resistivities: [f64; 2]) -> PyResult<Bound<'py, PyAny>> {
+    fn conductance<'py>(&self, level: &Object<'py>, resistivities: [f64; 2]) -> PyResult<Object<'py>> {
         mapped("level", level, FROM_ZERO, |level| self.states.conductance(level, resistivities), never)
     }
 
@@ -228,14 +222,14 @@ impl ElasticStates {
         &self,
         py: Python<'py>,
         materials: Vec<Bound<'py, Material>>,
-        load: &Bound<'py, PyAny>,
-        times: &Bound<'py, PyAny>,
+        load: &Object<'py>,
+        times: &Object<'py>,
         tolerance: f64,
     ) -> PyResult<Array<'py>> {
         let (history, times) = (history(load)?, column("times", times)?);
         let until = *times.last().ok_or_else(|| PyTypeError::new_err("times: at least one is needed"))?;
         if !times.is_sorted_by(|one, next| one < next) {
-            return Err(pyo3::exceptions::PyValueError::new_err("times: they must ascend, each once"));
+            return Err(PyValueError::new_err("times: they must ascend, each once"));
         }
         let mut values = Vec::with_capacity(3 * materials.len() * times.len());
         for material in &materials {
@@ -250,10 +244,7 @@ impl ElasticStates {
                 Ok(rows)
             });
             let rows = rows.or_raise()?;
-            if rows.len() != times.len() {
-                let text = format!("times: they must lie after 0: {} of {} were passed", rows.len(), times.len());
-                return Err(pyo3::exceptions::PyValueError::new_err(text));
-            }
+            one_for_each("of the times, which must lie after 0", "states", rows.len(), times.len())?;
             values.extend(rows.iter().flat_map(|row| &row[1..]));
             py.check_signals()?;
         }

@@ -71,15 +71,12 @@ impl StatesContact {
         exact_states: bool,
         friction: Option<f64>,
         estimated_friction: Option<f64>,
-        sheared_by: Option<Bound<'_, PyAny>>,
+        sheared_by: Option<Object<'_>>,
     ) -> PyResult<StatesContact> {
         let mut contact = st::StatesContact::new(&states.get().states, &material.get().material).or_raise()?;
-        if let Some(temperature) = &temperature {
-            contact = contact.with_temperature(temperature.get().history.clone());
-        }
-        if linear_steps {
-            contact = contact.with_linear_steps();
-        }
+        contact =
+            if_given(contact, temperature.as_ref(), |contact, of| contact.with_temperature(of.get().history.clone()));
+        contact = if_given(contact, linear_steps.then_some(()), |contact, ()| contact.with_linear_steps());
         if let Some(error) = merge_error {
             contact = contact.with_merge_error(error).or_raise()?;
         }
@@ -105,14 +102,6 @@ impl StatesContact {
     fn step(mut slf: Taken<'_, Self>, py: Python<'_>, dt: f64, load: &Load) -> PyResult<StepReport> {
         let (contact, load) = (slf.held.free()?, load.load);
         free(py, || contact.step(dt, load)).or_raise().map(StepReport)
-    }
-
-    /// The pressure [Pa] of the shape of the grid, from the states of a sweep with `keep_pressures`.
-    #[getter]
-    fn pressure<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Array<'py>> {
-        let contact = slf.get()?;
-        let pressure = free(py, || contact.pressure()).or_raise()?;
-        to_array(py, pressure, &slf.cells()?)
     }
 
     /// The fields within a relative `accuracy`.
@@ -144,9 +133,7 @@ impl StatesContact {
     /// >>> bool(np.isclose((traction * np.diff(level, prepend=0.0)).sum(), contact.force))    # the force of p_e(l) is l
     /// True
     fn tractions<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Array<'py>> {
-        let rows: Vec<f64> = slf.get()?.tractions().flat_map(|(level, traction)| [level, traction]).collect();
-        let n = rows.len() / 2;
-        to_array(py, rows, &[n, 2])
+        rows_of(py, slf.get()?.tractions())
     }
 
     fn __repr__(slf: Shared<'_, Self>) -> PyResult<String> {
@@ -156,7 +143,9 @@ impl StatesContact {
     }
 }
 
-getters! {by get StatesContact, of:
+getters! {by get StatesContact, of, py:
+    /// The pressure [Pa] of the shape of the grid, from the states of a sweep with `keep_pressures`.
+    pressure: Array<'py> = on_grid(py, of, free(py, || of.pressure()).or_raise()?)?;
     /// Time [s].
     time: f64 = of.time();
     /// Normal force [N].
@@ -177,9 +166,8 @@ getters! {by get StatesContact, of:
     is_separated: bool = of.is_separated();
 }
 
-impl StatesContact {
-    pub fn cells(&self) -> PyResult<Vec<usize>> {
-        let states = self.get()?.states();
-        Ok(states.grid().map_or_else(Vec::new, |grid| grid.cells().to_vec()))
-    }
+/// A field on the grid of the states.
+pub fn on_grid<'py>(py: Python<'py>, of: &st::StatesContact, field: Vec<f64>) -> PyResult<Array<'py>> {
+    let grid = of.states().grid();
+    to_array(py, field, &grid.map_or_else(Vec::new, |grid| grid.cells().to_vec()))
 }

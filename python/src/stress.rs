@@ -59,12 +59,7 @@ fn shown<'py>(py: Python<'py>, of: &[Stress], quantity: Option<&str>, shape: &[u
 #[pymethods]
 impl SubsurfaceStress {
     #[new]
-    fn new(
-        py: Python<'_>,
-        kernel: &InfluenceKernel,
-        pressure: &Bound<'_, PyAny>,
-        nu: f64,
-    ) -> PyResult<SubsurfaceStress> {
+    fn new(py: Python<'_>, kernel: &InfluenceKernel, pressure: &Object<'_>, nu: f64) -> PyResult<SubsurfaceStress> {
         let pressure = field("pressure", pressure, kernel.kernel.grid().cells())?;
         free(py, || ob::SubsurfaceStress::new(&kernel.kernel, &pressure, nu)).or_raise().map(SubsurfaceStress)
     }
@@ -109,7 +104,7 @@ impl SubsurfaceStress {
 
     /// The components at points (x1, x2, depth) [m], an array of shape (n, 3): an array of shape (n, 6).
     #[pyo3(signature = (points, *, quantity=None))]
-    fn at<'py>(&self, py: Python<'py>, points: &Bound<'py, PyAny>, quantity: Option<&str>) -> PyResult<Array<'py>> {
+    fn at<'py>(&self, py: Python<'py>, points: &Object<'py>, quantity: Option<&str>) -> PyResult<Array<'py>> {
         let points: Vec<[f64; 3]> = table("points", points)?;
         let values = free(py, || self.0.at(&points)).or_raise()?;
         shown(py, &values, quantity, &[points.len()])
@@ -118,15 +113,10 @@ impl SubsurfaceStress {
     /// Where a quantity is greatest between the depths [m]: "value" [Pa], "position" [m], "components", and whether it is
     /// "at_end_of_depths", so that more may lie beyond.
     #[pyo3(signature = (depths, quantity="von_mises"))]
-    fn greatest<'py>(&self, py: Python<'py>, depths: Vec<f64>, quantity: &str) -> PyResult<Bound<'py, PyDict>> {
+    fn greatest<'py>(&self, py: Python<'py>, depths: Vec<f64>, quantity: &str) -> PyResult<Dict<'py>> {
         let quantity = choice("quantity", quantity, &QUANTITIES)?;
         let peak = free(py, || self.0.greatest(&depths, quantity)).or_raise()?;
-        Ok(dict! { py;
-            "value": peak.value,
-            "position": peak.position,
-            "components": peak.stress.components().to_vec(),
-            "at_end_of_depths": peak.at_end_of_depths,
-        })
+        Ok(dict! { py; peak { value, position, at_end_of_depths }, "components": peak.stress.components().to_vec() })
     }
 
     /// Writes the stress at `depths` [m] below a `contact` of this grid: `format` "npz" (`numpy.load`) or "vtk" (name it `.vtr`: ParaView,
@@ -141,7 +131,7 @@ impl SubsurfaceStress {
         depths: Vec<f64>,
         format: &str,
         title: &str,
-        notes: Option<&Bound<'_, PyDict>>,
+        notes: Option<&Dict<'_>>,
     ) -> PyResult<()> {
         let format: Format = choice("format", format, &FORMATS)?;
         let (contact, metadata) = (contact.shown()?, metadata(title, notes)?);
@@ -210,14 +200,8 @@ impl StressHistory {
 #[pyclass(module = "viscocontact")]
 pub struct EnergyBalance(ct::EnergyBalance);
 
-fn energies<'py>(py: Python<'py>, of: ct::Energies) -> PyResult<Bound<'py, PyDict>> {
-    Ok(dict! { py;
-        "work": of.work,
-        "stored": of.stored,
-        "viscous": of.viscous,
-        "lost": of.lost,
-        "imbalance": of.imbalance(),
-    })
+fn energies<'py>(py: Python<'py>, of: ct::Energies) -> PyResult<Dict<'py>> {
+    Ok(dict! { py; of { work, stored, viscous, lost }, "imbalance": of.imbalance() })
 }
 
 #[pymethods]
@@ -229,12 +213,8 @@ impl EnergyBalance {
 
     fn __repr__(slf: Shared<'_, Self>) -> String {
         let of = slf.0.energies();
-        format!(
-            "EnergyBalance(work={} J, stored={} J, viscous={} J)",
-            digits(of.work),
-            digits(of.stored),
-            digits(of.viscous)
-        )
+        let [work, stored, viscous] = [of.work, of.stored, of.viscous].map(digits);
+        format!("EnergyBalance(work={work} J, stored={stored} J, viscous={viscous} J)")
     }
 
     /// Takes in the last step, of which this is the report, and returns `energies`.
@@ -243,7 +223,7 @@ impl EnergyBalance {
         py: Python<'py>,
         contact: Shared<'_, ViscoelasticContact>,
         report: &StepReport,
-    ) -> PyResult<Bound<'py, PyDict>> {
+    ) -> PyResult<Dict<'py>> {
         let (contact, balance) = (contact.get()?, &mut slf.0);
         energies(py, free(py, || balance.record(contact, &report.0)).or_raise()?)
     }
@@ -251,7 +231,7 @@ impl EnergyBalance {
     /// Since the bodies were undisturbed [J]: the "work" of the load, what is "stored", what the creep dissipated ("viscous"), what was "lost"
     /// in jumps, and the "imbalance" of these, the error of the steps.
     #[getter]
-    fn energies<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+    fn energies<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Dict<'py>> {
         energies(py, slf.0.energies())
     }
 }

@@ -72,11 +72,11 @@ impl Study {
         py: Python<'_>,
         shape: Py<Shape>,
         material: Py<Material>,
-        load: &Bound<'_, PyAny>,
+        load: &Object<'_>,
         until: f64,
         accuracy: f64,
         ask: Vec<String>,
-        quantities: Option<&Bound<'_, PyDict>>,
+        quantities: Option<&Dict<'_>>,
         fields: Vec<f64>,
         kernel: Option<Py<PyAny>>,
         domain: Option<[f64; 2]>,
@@ -91,40 +91,27 @@ impl Study {
         let (geometry, body) = (&*shape.get().geometry, &material.get().material);
         let (made, temperature_of) =
             (kernel.as_ref(), temperature.as_ref().map(|temperature| &temperature.get().history));
-        let own = |(name, of): (Bound<'_, PyAny>, Bound<'_, PyAny>)| {
-            Ok((name.extract::<String>()?, of.extract::<Function>()?))
-        };
-        let own: Vec<(String, Function)> =
-            quantities.map(|given| given.iter().map(own).collect::<PyResult<_>>()).transpose()?.unwrap_or_default();
-        let asked = ask.iter().map(|name| observable(name)).collect::<PyResult<Vec<_>>>()?;
+        let own = |(name, of): (Object<'_>, Object<'_>)| Ok((name.extract::<String>()?, of.extract::<Function>()?));
+        let own: Vec<(String, Function)> = quantities.into_iter().flatten().map(own).collect::<PyResult<_>>()?;
+        let asked = ask.iter().map(|name| choice("ask", name, &QUANTITIES)).collect::<PyResult<Vec<_>>>()?;
         let mut listener = Listener::new(progress);
         let study = free(py, || {
             let scene = |grid: viscocontact::Grid, settings| {
                 let kernel = kernel_on(made, &grid)?;
                 let builder = Contact::builder(grid).geometry(geometry).material(body.clone()).settings(settings);
-                let builder = kernel.into_iter().fold(builder, |builder, kernel| builder.kernel(kernel));
-                Ok(temperature_of.into_iter().fold(builder, |builder, history| builder.temperature(history.clone())))
+                let builder = if_given(builder, kernel, |builder, kernel| builder.kernel(kernel));
+                Ok(if_given(builder, temperature_of, |builder, history| builder.temperature(history.clone())))
             };
             let mut study = vs::Study::new(scene, &*history, until).accuracy(accuracy).cells(cells).fields_at(&fields);
             study = asked.into_iter().fold(study, vs::Study::ask);
             for (name, of) in &own {
                 study = study.ask_own(name, |fields| value_of(of, fields));
             }
-            if let Some(lengths) = domain {
-                study = study.domain(lengths);
-            }
             for (axis, period) in Axis::BOTH.into_iter().zip([periods.0, periods.1]) {
-                if let Some(length) = period {
-                    study = study.period(axis, length);
-                }
+                study = if_given(study, period, |study, length| study.period(axis, length));
             }
-            if let Some(length) = line {
-                study = study.line(length);
-            }
-            if let Some(most) = work {
-                study = study.work(most);
-            }
-            study.run_with(|at| {
+            study = if_given(if_given(study, domain, vs::Study::domain), line, vs::Study::line);
+            if_given(study, work, vs::Study::work).run_with(|at| {
                 let expected = at.expected.map(|cost| (cost.cells, cost.steps, cost.work));
                 listener.goes_on((at.runs, at.cells, at.steps, at.time, at.work, expected))
             })
@@ -148,11 +135,11 @@ impl Study {
         } else {
             self.study.contact().clone()
         };
-        let (grid, settings, keywords) = (self.grid(), contact.settings(), PyDict::new(py));
+        let (grid, settings, keywords) = (Grid(self.study.grid().clone()), contact.settings(), PyDict::new(py));
         keywords.set_item("tolerance", settings.tolerance())?;
         keywords.set_item("series_tolerance", settings.series_tolerance())?;
         if let Some(kernel) = &self.kernel {
-            keywords.set_item("kernel", kernel.call1(py, (self.grid(),))?)?;
+            keywords.set_item("kernel", kernel.call1(py, (Grid(grid.0.clone()),))?)?;
         }
         if let Some(temperature) = &self.temperature {
             keywords.set_item("temperature", temperature.clone_ref(py))?;
@@ -230,14 +217,6 @@ getters! {Study.study, of:
     work: f64 = of.work;
     /// Memory of the contact of the finest run [bytes].
     bytes: u64 = of.bytes();
-}
-
-fn observable(name: &str) -> PyResult<Observable> {
-    let found = QUANTITIES.into_iter().find(|(own, _)| *own == name).map(|(_, observable)| observable);
-    found.ok_or_else(|| {
-        let names = QUANTITIES.map(|(own, _)| format!("{own:?}")).join(", ");
-        PyValueError::new_err(format!("ask = {name:?} is not known: it must be one of {names}"))
-    })
 }
 
 /// The value of a function in Python of the fields.

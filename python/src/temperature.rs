@@ -5,22 +5,15 @@ use viscocontact::rheology as rh;
 use crate::arrays::{number, pairs};
 use crate::prelude::*;
 
-/// How temperature shifts the time scale: a_T, by which all times of a material are multiplied at a temperature T [K]; and b_T, by which its
-/// moduli are, if the law has vertical factors.
-///
-/// >>> law = TimeTemperature.wlf(17.44, 51.6, 373.15)
-/// >>> law.shift_factor(373.15)
-/// 1.0
-#[pyclass(frozen, module = "viscocontact")]
-pub struct TimeTemperature {
-    pub law: rh::TimeTemperature,
-    recipe: Recipe,
-}
-
-impl TimeTemperature {
-    fn by(recipe: Recipe, law: rh::TimeTemperature) -> TimeTemperature {
-        TimeTemperature { law, recipe }
-    }
+made! {
+    /// How temperature shifts the time scale: a_T, by which all times of a material are multiplied at a temperature T [K]; and b_T, by which its
+    /// moduli are, if the law has vertical factors.
+    ///
+    /// >>> law = TimeTemperature.wlf(17.44, 51.6, 373.15)
+    /// >>> law.shift_factor(373.15)
+    /// 1.0
+    #[pyclass(frozen, module = "viscocontact")]
+    TimeTemperature(pub law: rh::TimeTemperature)
 }
 
 makers! {TimeTemperature, py:
@@ -40,38 +33,7 @@ impl TimeTemperature {
     #[staticmethod]
     fn published(py: Python<'_>, name: &str) -> PyResult<Option<TimeTemperature>> {
         let Some(law) = rh::library::find(name).or_raise()?.time_temperature() else { return Ok(None) };
-        Ok(Some(TimeTemperature { law, recipe: Recipe::new(py, "published", (name,))? }))
-    }
-
-    /// The same beyond a table, by the Arrhenius law through its two last rows.
-    fn extrapolated(slf: Bound<'_, Self>) -> PyResult<TimeTemperature> {
-        let law = slf.get().law.clone().extrapolated();
-        Ok(TimeTemperature { law, recipe: Recipe::new(slf.py(), "extrapolated", (slf,))? })
-    }
-
-    /// The same above a `temperature` [K], and below it an Arrhenius law of activation `energy` [J/mol], without a jump.
-    fn with_arrhenius_below(slf: Bound<'_, Self>, temperature: f64, energy: f64) -> PyResult<TimeTemperature> {
-        let law = slf.get().law.clone().with_arrhenius_below(temperature, energy).or_raise()?;
-        let recipe = Recipe::new(slf.py(), "with_arrhenius_below", (slf, temperature, energy))?;
-        Ok(TimeTemperature { law, recipe })
-    }
-
-    /// The same with moduli that are b_T times those at the reference: rows of temperature [K] and vertical factor b_T.
-    pub fn with_vertical_factors(slf: Bound<'_, Self>, table: Value<'_>) -> PyResult<TimeTemperature> {
-        let law = slf.get().law.clone().with_vertical_factors(&pairs("table", &table)?).or_raise()?;
-        Ok(TimeTemperature { law, recipe: Recipe::new(slf.py(), "with_vertical_factors", (slf, table))? })
-    }
-
-    /// The same with moduli in proportion to the temperature, as of rubbers.
-    fn with_entropic_moduli(slf: Bound<'_, Self>) -> PyResult<TimeTemperature> {
-        let law = slf.get().law.clone().with_entropic_moduli();
-        Ok(TimeTemperature { law, recipe: Recipe::new(slf.py(), "with_entropic_moduli", (slf,))? })
-    }
-
-    /// The same with moduli that do not change with temperature, as a `TemperatureHistory` needs.
-    fn without_vertical_factors(slf: Bound<'_, Self>) -> PyResult<TimeTemperature> {
-        let law = slf.get().law.clone().without_vertical_factors();
-        Ok(TimeTemperature { law, recipe: Recipe::new(slf.py(), "without_vertical_factors", (slf,))? })
+        Ok(Some(TimeTemperature::by(Recipe::new(py, "published", (name,))?, law)))
     }
 
     /// b_T at a temperature [K]: 1 without vertical factors.
@@ -92,29 +54,43 @@ impl TimeTemperature {
     }
 }
 
+changes! {TimeTemperature, slf:
+    /// The same beyond a table, by the Arrhenius law through its two last rows.
+    extrapolated() = sure(slf.get().law.clone().extrapolated());
+
+    /// The same above a `temperature` [K], and below it an Arrhenius law of activation `energy` [J/mol], without a jump.
+    with_arrhenius_below(temperature: f64, energy: f64) = slf.get().law.clone().with_arrhenius_below(temperature, energy);
+
+    /// The same with moduli that are b_T times those at the reference: rows of temperature [K] and vertical factor b_T.
+    with_vertical_factors(table: Value<'_>) = slf.get().law.clone().with_vertical_factors(&pairs("table", &table)?);
+
+    /// The same with moduli in proportion to the temperature, as of rubbers.
+    with_entropic_moduli() = sure(slf.get().law.clone().with_entropic_moduli());
+
+    /// The same with moduli that do not change with temperature, as a `TemperatureHistory` needs.
+    without_vertical_factors() = sure(slf.get().law.clone().without_vertical_factors());
+}
+
 getters! {TimeTemperature.law, of:
     /// The reference temperature [K].
     reference: f64 = of.reference();
 }
 
-made_by_calls!(TimeTemperature);
-
-/// A temperature that changes in time; the material creeps in reduced time.
-///
-/// Parameters
-/// ----------
-/// law : TimeTemperature
-/// temperature : float, rows of (time [s], temperature [K]), or a function of time
-/// corners : times at which a function of time has corners [s]
-///
-/// >>> law = TimeTemperature.arrhenius(80e3, 300.0)
-/// >>> warming = TemperatureHistory(law, [(0.0, 300.0), (10.0, 320.0)])
-/// >>> warming.at(5.0), warming.reduced_time(0.0, 10.0) > 10.0      # it creeps faster when warm
-/// (310.0, True)
-#[pyclass(frozen, module = "viscocontact")]
-pub struct TemperatureHistory {
-    pub history: rh::TemperatureHistory,
-    recipe: Recipe,
+made! {
+    /// A temperature that changes in time; the material creeps in reduced time.
+    ///
+    /// Parameters
+    /// ----------
+    /// law : TimeTemperature
+    /// temperature : float, rows of (time [s], temperature [K]), or a function of time
+    /// corners : times at which a function of time has corners [s]
+    ///
+    /// >>> law = TimeTemperature.arrhenius(80e3, 300.0)
+    /// >>> warming = TemperatureHistory(law, [(0.0, 300.0), (10.0, 320.0)])
+    /// >>> warming.at(5.0), warming.reduced_time(0.0, 10.0) > 10.0      # it creeps faster when warm
+    /// (310.0, True)
+    #[pyclass(frozen, module = "viscocontact")]
+    TemperatureHistory(pub history: rh::TemperatureHistory)
 }
 
 #[pymethods]
@@ -136,20 +112,13 @@ impl TemperatureHistory {
         } else {
             rh::TemperatureHistory::table(given, &pairs("temperature", &temperature)?)
         };
-        Ok(TemperatureHistory {
-            history: history.or_raise()?,
-            recipe: Recipe::new(py, "", (law, temperature, corners))?.calling(function.into_iter().collect::<Vec<_>>()),
-        })
-    }
-
-    /// The same with physical ageing: times grow as (age/`reference`)^`rate`, the age being `start` [s] at time 0.
-    fn ageing(slf: Bound<'_, Self>, rate: f64, reference: f64, start: f64) -> PyResult<TemperatureHistory> {
-        let history = slf.get().history.clone().ageing(rate, reference, start).or_raise()?;
-        Ok(TemperatureHistory { history, recipe: Recipe::new(slf.py(), "ageing", (slf, rate, reference, start))? })
+        let recipe =
+            Recipe::new(py, "", (law, temperature, corners))?.calling(function.into_iter().collect::<Vec<_>>());
+        Ok(TemperatureHistory::by(recipe, history.or_raise()?))
     }
 
     /// The temperature [K] at times [s].
-    fn at<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    fn at<'py>(&self, t: &Object<'py>) -> PyResult<Object<'py>> {
         mapped("t", t, FROM_ZERO, |t| self.history.at(t), never)
     }
 
@@ -159,4 +128,7 @@ impl TemperatureHistory {
     }
 }
 
-made_by_calls!(TemperatureHistory);
+changes! {TemperatureHistory, slf:
+    /// The same with physical ageing: times grow as (age/`reference`)^`rate`, the age being `start` [s] at time 0.
+    ageing(rate: f64, reference: f64, start: f64) = slf.get().history.clone().ageing(rate, reference, start);
+}

@@ -98,10 +98,10 @@ impl FromPyObject<'_, '_> for Function {
 
 impl<'py> IntoPyObject<'py> for Function {
     type Target = PyAny;
-    type Output = Bound<'py, PyAny>;
+    type Output = Object<'py>;
     type Error = PyErr;
 
-    fn into_pyobject(self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+    fn into_pyobject(self, py: Python<'py>) -> PyResult<Object<'py>> {
         Ok(self.0.bind(py).clone())
     }
 }

@@ -5,7 +5,7 @@ use viscocontact::output::{self as vo, Earlier, Field, Format, Metadata};
 use crate::fields::Showing;
 use crate::prelude::*;
 
-pub fn metadata(title: &str, notes: Option<&Bound<'_, PyDict>>) -> PyResult<Metadata> {
+pub fn metadata(title: &str, notes: Option<&Dict<'_>>) -> PyResult<Metadata> {
     notes.into_iter().flatten().try_fold(Metadata::new(title), |metadata, (key, value)| {
         Ok(metadata.note(key.str()?.to_string(), value.str()?.to_string()))
     })
@@ -31,7 +31,8 @@ macro_rules! with_either {
     };
 }
 
-/// A run as a CSV file with a row for each step; its first line is the scene as JSON.
+/// A run as a CSV file with a row for each step, below the names of the columns with their units. The scene is beside it as JSON, in a file with `.json`
+/// after the name.
 ///
 /// Parameters
 /// ----------
@@ -44,7 +45,7 @@ macro_rules! with_either {
 /// earlier : "refuse" (default: FileExistsError), "replace", or "continue"
 ///     "continue" goes on after the state of the contact, as after `resume`: what the file has of later times is removed.
 ///
-/// `to_dataframe()` reads it back; elsewhere `pandas.read_csv(path, comment="#")`.
+/// `to_dataframe()` reads it back, and `pandas.read_csv(path)` elsewhere.
 ///
 /// >>> import pathlib, tempfile
 /// >>> path = pathlib.Path(tempfile.mkdtemp(), "history.csv")
@@ -52,8 +53,8 @@ macro_rules! with_either {
 /// >>> history = CsvHistory(path, contact)
 /// >>> for report in contact.follow(Load.force(0.5), 0.2, dt=0.1):
 /// ...     history.record(contact, report)
-/// >>> len(path.read_text().splitlines())      # the scene, the names, and a row for each step
-/// 5
+/// >>> len(path.read_text().splitlines())      # the names, and a row for each step
+/// 4
 #[pyclass(module = "viscocontact")]
 pub struct CsvHistory {
     history: vo::CsvHistory,
@@ -66,9 +67,9 @@ impl CsvHistory {
     #[pyo3(signature = (path, contact, *, title="", notes=None, columns=vec![], earlier="refuse"))]
     fn new(
         path: PathBuf,
-        contact: &Bound<'_, PyAny>,
+        contact: &Object<'_>,
         title: &str,
-        notes: Option<&Bound<'_, PyDict>>,
+        notes: Option<&Dict<'_>>,
         columns: Vec<String>,
         earlier: &str,
     ) -> PyResult<CsvHistory> {
@@ -87,12 +88,7 @@ impl CsvHistory {
 
     /// Appends the row of the last step, with the values of the additional columns.
     #[pyo3(signature = (contact, report, columns=vec![]))]
-    fn record(
-        mut slf: Taken<'_, Self>,
-        contact: &Bound<'_, PyAny>,
-        report: &StepReport,
-        columns: Vec<f64>,
-    ) -> PyResult<()> {
+    fn record(mut slf: Taken<'_, Self>, contact: &Object<'_>, report: &StepReport, columns: Vec<f64>) -> PyResult<()> {
         with_either!(contact, contact => slf.history.record(contact, &report.0, &columns))
     }
 }
@@ -134,7 +130,7 @@ impl FrameSeries {
         format: &str,
         fields: Option<Vec<String>>,
         title: &str,
-        notes: Option<&Bound<'_, PyDict>>,
+        notes: Option<&Dict<'_>>,
         earlier: &str,
     ) -> PyResult<FrameSeries> {
         let format = choice("format", format, &FORMATS)?;
@@ -164,7 +160,7 @@ getters! {FrameSeries, of:
 impl ViscoelasticContact {
     /// The scene as JSON on one line: grid, settings, materials, units and conventions.
     #[pyo3(signature = (title="", notes=None))]
-    fn describe(slf: Shared<'_, Self>, title: &str, notes: Option<&Bound<'_, PyDict>>) -> PyResult<String> {
+    fn describe(slf: Shared<'_, Self>, title: &str, notes: Option<&Dict<'_>>) -> PyResult<String> {
         Ok(metadata(title, notes)?.json(slf.get()?))
     }
 }

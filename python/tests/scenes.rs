@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use viscocontact::geometry::{Cone, Ellipsoid, Geometry, Shifted, Sphere, Sum, Wavy};
 use viscocontact::prelude::*;
+use viscocontact::rheology::PronyTerm;
 
 /// Times over which bodies without an exact series are fitted [s].
 const FITTED: RangeInclusive<f64> = 1e-4..=1e2;
@@ -52,7 +53,8 @@ fn shape(draw: &mut Draw) -> viscocontact::Result<Arc<dyn Geometry>> {
 
 fn rheology(draw: &mut Draw) -> viscocontact::Result<Arc<dyn Rheology>> {
     let (g, time) = (draw.within(0.5e6, 2e6), draw.within(0.1, 10.0));
-    Ok(match draw.below(6) {
+    let shares = |draw: &mut Draw| [time, 10.0 * time].map(|time| PronyTerm { share: draw.within(0.1, 0.4), time });
+    Ok(match draw.below(8) {
         0 => Arc::new(Elastic::new(g)?),
         1 => Arc::new(Maxwell::with_time(g, time)?),
         2 => Arc::new(Zener::with_time(g, draw.within(0.5e6, 2e6), time)?),
@@ -64,6 +66,8 @@ fn rheology(draw: &mut Draw) -> viscocontact::Result<Arc<dyn Rheology>> {
             let body = FractionalZener::new(g, draw.within(0.5e6, 2e6), time, draw.within(0.3, 0.9))?;
             Arc::new(body.series(FITTED, 1e-4)?)
         }
+        5 => Arc::new(GeneralizedMaxwell::prony(g, &shares(draw))?),
+        6 => Arc::new(GeneralizedMaxwell::prony_long_term(g, &shares(draw))?),
         _ => {
             let body = SlowCreep::new(1.0 / g, draw.within(1e-7, 1e-6), time, draw.within(0.3, 0.9))?;
             Arc::new(body.series(FITTED, 1e-4)?)

@@ -85,7 +85,7 @@ class Early(np.ndarray):
 
 
 def test_functions_of_numbers_and_arrays():
-    body = vc.Rheology.prony(1e6, [(1e6, 1.0)])
+    body = vc.Rheology.generalized_maxwell(1e6, [(1e6, 1.0)])
     functions = [
         body.creep_compliance,
         body.relaxation_modulus,
@@ -130,7 +130,7 @@ def test_wrong_arrays_are_refused_by_name():
     with pytest.raises(ValueError, match="geometry: the shape"):
         vc.ViscoelasticContact(grid, np.zeros((4, 4)), RUBBER)
     with pytest.raises(ValueError, match=r"terms: the shape \(n, 2\) is needed"):
-        vc.Rheology.prony(1.0, [1.0, 2.0])
+        vc.Rheology.generalized_maxwell(1.0, [1.0, 2.0])
     with pytest.raises(ValueError, match="times: value 0 .* is NaN"):
         vc.LoadHistory.forces([math.nan, 1.0], [0.0, 1.0])
     with pytest.raises(ValueError, match="forces: 3 given, 2 needed"):
@@ -332,7 +332,7 @@ def test_samples_and_events():
         BALL + vc.Shape.wavy(1e-7, 1e-3).shifted((1e-4, 0)),
         vc.HeightMap.rough(GRID, 2e-3, 0.5e-3, rms_slope=0.1, seed=1),
         vc.HeightMap(np.arange(16.0).reshape(4, 4) * 1e-6, 4e-3, periodic=True).inverted().centered_at((1e-3, 0)),
-        vc.Rheology.prony(1e6, [(1e6, 1.0)]),
+        vc.Rheology.generalized_maxwell(1e6, [(1e6, 1.0)]),
         vc.Material(vc.Tension(vc.Rheology.zener(1e6, 1e6, 1.0)), bulk_modulus=1e9),
         vc.Material(vc.Measurements.creep([0.1, 1, 10, 100], [1e-6, 1.2e-6, 1.5e-6, 1.6e-6]).fit()),
         vc.Load.force(1.0, at=(1e-3, 0)),
@@ -355,7 +355,7 @@ def test_pickles(thing):
 
 # what an array or a list makes, and a number of it
 MADE_OF = {
-    "terms": (lambda a: vc.Rheology.prony(1e6, a), [[1e6, 0.1]], lambda of: of.creep_compliance(1.0)),
+    "terms": (lambda a: vc.Rheology.generalized_maxwell(1e6, a), [[1e6, 0.1]], lambda of: of.creep_compliance(1.0)),
     "a table of shifts": (lambda a: vc.TimeTemperature.table(a, 300.0), [[290.0, 10.0], [300.0, 1.0]], lambda of: of.shift_factor(295.0)),
     "vertical factors": (
         lambda a: vc.TimeTemperature.arrhenius(1e5, 300.0).with_vertical_factors(a),

@@ -80,6 +80,11 @@ def test_programs_of_the_pages(repository, page, fence, capsys, tmp_path, monkey
         exec(program, {})
 
 
+def test_the_page_of_a_package_index_has_no_relative_links(repository):
+    links = re.findall(r"\]\(([^)]*)\)", (repository / "python/README.md").read_text(encoding="utf-8"))
+    assert links and all(link.startswith("https://") for link in links)
+
+
 def test_renamed_messages_are_messages(repository):
     table = (repository / "python/src/errors.rs").read_text(encoding="utf-8").split("const NAMES")[1].split("];")[0]
     named = re.findall(r'\(\s*"((?:[^"\\]|\\.)*)",', table)

@@ -50,7 +50,7 @@ def shape(draw):
 
 def rheology(draw):
     g, time = draw.within(0.5e6, 2e6), draw.within(0.1, 10.0)
-    kind = draw.below(6)
+    kind = draw.below(8)
     if kind == 0:
         return vc.Rheology.elastic(g)
     if kind == 1:
@@ -58,9 +58,12 @@ def rheology(draw):
     if kind == 2:
         return vc.Rheology.zener(g, draw.within(0.5e6, 2e6), time)
     if kind == 3:
-        return vc.Rheology.prony(g, [(draw.within(1e5, 1e7), time), (draw.within(1e5, 1e7), 10.0 * time)])
+        return vc.Rheology.generalized_maxwell(g, [(draw.within(1e5, 1e7), time), (draw.within(1e5, 1e7), 10.0 * time)])
     if kind == 4:
         return vc.Rheology.fractional_zener(g, draw.within(0.5e6, 2e6), time, draw.within(0.3, 0.9)).fitted(1e-4, 1e2)
+    if kind in (5, 6):
+        make = vc.Rheology.prony if kind == 5 else vc.Rheology.prony_long_term
+        return make(g, [(draw.within(0.1, 0.4), time), (draw.within(0.1, 0.4), 10.0 * time)])
     return vc.Rheology.slow_creep(1.0 / g, draw.within(1e-7, 1e-6), time, draw.within(0.3, 0.9)).fitted(1e-4, 1e2)
 
 

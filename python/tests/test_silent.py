@@ -16,7 +16,7 @@ import pytest
 import viscocontact as vc
 
 F, NAN = vc.Load.force, float("nan")
-BODY = vc.Rheology.prony(1e6, [(5e6, 1e-3), (2e6, 0.1)])
+BODY = vc.Rheology.generalized_maxwell(1e6, [(5e6, 1e-3), (2e6, 0.1)])
 RUBBER = vc.Material(BODY)
 BALL = vc.Shape.sphere(10e-3)
 TIP = vc.ElasticStates.sphere(5e-6)
@@ -299,13 +299,17 @@ def test_a_process_that_was_forked_computes_on_a_thread_of_its_own():
         assert pool.map_async(stepped, [0.01, 0.02]).get(60) == expected
 
 
+CREEP = lambda shift: vc.Measurements.creep(np.geomspace(0.1, 10.0, 9), 1e-6 * (1 + (np.geomspace(0.1, 10.0, 9) / shift) ** 0.3))
+MASTER = vc.MasterCurve(300.0, [(300.0, CREEP(1.0)), (310.0, CREEP(0.1))])
 PICKLED = {
     "fit": FIT, "estimate": FIT["tau"], "curve": noisy(), "experiment": EXPERIMENT, "identification": vc.Identification("zener", contact_point=True, fix={"tau": 0.5}),
     "recording": vc.Recording([0.0, 1.0], force=[0.0, 1.0]), "report": ball().step(0.1, F(0.1)), "body": ball().bodies[0],
     "times": vc.Times.every(0.1) + [0.5], "jkr": vc.Jkr(*JKR), "growing": GROWING, "edge": vc.OpeningEdge(RUBBER, 0.05, 1e-7),
     "sliding report": vc.SteadySliding(GRID, FLAT, RUBBER, kernel=vc.InfluenceKernel.periodic(GRID)).at(1.0, F(1e-4)),
     "load": F(1.0, at=(1e-3, None)), "map": vc.HeightMap(np.eye(4), 1.0), "shape": BALL + FLAT, "grid": GRID, "measurements": vc.Measurements.creep([1.0, 2.0, 3.0, 4.0], [1.0, 2.0, 2.5, 2.8]),
-    "iterators": vc.Material(vc.Rheology.prony(1e6, zip([5e6], [1.0])), 0.3), "generator": vc.Rheology.prony(1e6, ((g, 1.0) for g in (1e6,))),
+    "swept": vc.SteadySliding(GRID, FLAT, RUBBER, kernel=vc.InfluenceKernel.periodic(GRID)).sweep([0.1, 1.0], F(1e-4)),
+    "master curve": MASTER, "body of a master curve": MASTER.fit(), "tension": vc.Tension(BODY),
+    "iterators": vc.Material(vc.Rheology.generalized_maxwell(1e6, zip([5e6], [1.0])), 0.3), "generator": vc.Rheology.generalized_maxwell(1e6, ((g, 1.0) for g in (1e6,))),
 }
 
 
@@ -322,6 +326,73 @@ def test_pickles_and_copies_are_equal(name):
         assert again.profile_interval("tau") == own.profile_interval("tau") and again.aicc == own.aicc
 
 
+def test_a_steady_motion_travels_as_it_was_made():
+    options = {"kernel": vc.InfluenceKernel.periodic(GRID), "tolerance": 1e-8}
+    made = [vc.SteadySliding(GRID, FLAT, RUBBER, **options), vc.SteadySliding(GRID, FLAT, RUBBER, modulus=abs_of_one, **options)]
+    for own in made:
+        first = own.at(1.0, F(1e-4))
+        again = pickle.loads(pickle.dumps(own))
+        with pytest.raises(RuntimeError, match="no state"):
+            again.pressure
+        assert again.at(1.0, F(1e-4)) == first
+
+
+def abs_of_one(omega):
+    return 1e6 * (1 + 0.1j * omega / (1 + omega))
+
+
+def test_a_master_curve_of_a_file_travels(tmp_path):
+    path, t = tmp_path / "curve.csv", np.geomspace(0.1, 10.0, 9)
+    rows = [f"{T},{t_},{1e-6 * (1 + (t_ / shift) ** 0.3)}" for T, shift in ((300.0, 1.0), (310.0, 0.1)) for t_ in t]
+    path.write_text("T [K],t [s],J [1/Pa]\n" + "\n".join(rows) + "\n")
+    curve = vc.MasterCurve.from_csv("creep", path, 300.0, units="headings")
+    path.unlink()
+    again = pickle.loads(pickle.dumps(curve))
+    assert again == curve and again.shift_factors == curve.shift_factors == MASTER.shift_factors
+    assert pickle.loads(pickle.dumps(curve.fit())).creep_compliance(1.0) == curve.fit().creep_compliance(1.0)
+
+
+def test_lateral_force_is_one_property():
+    sliding = vc.SteadySliding(GRID, FLAT, RUBBER, kernel=vc.InfluenceKernel.periodic(GRID))
+    report = sliding.at(1.0, F(1e-4))
+    rubbed = vc.StatesContact(TIP, RUBBER, estimated_friction=0.5)
+    rubbed.step_sheared(0.0, F(1e-6), F(2e-7))
+    in_space = vc.FrictionContact(vc.Grid(16, 4e-3), BALL, RUBBER, 0.5)
+    in_space.step(0.0, F(0.1), vc.ShearLoad((0.02, 0.0)))
+    assert report.dissipation == pytest.approx(1.0 * report.lateral_force[0])
+    assert rubbed.lateral_force == pytest.approx(2e-7) and in_space.lateral_force == pytest.approx((0.02, 0.0), abs=1e-8)
+    assert (report.force, rubbed.force, in_space.force) == pytest.approx((1e-4, 1e-6, 0.1))
+    assert not any(hasattr(kind, "lateral_force") for kind in (vc.ViscoelasticContact, vc.ElasticContact, vc.Fields))
+
+
+def test_a_prony_series_is_of_the_pairs_of_rust():
+    shares = vc.Rheology.prony(4e6, [(0.5, 0.1), (0.25, 10.0)])
+    assert shares.creep_spectrum == vc.Rheology.generalized_maxwell(1e6, [(2e6, 0.1), (1e6, 10.0)]).creep_spectrum
+    assert shares.creep_spectrum == vc.Rheology.prony_long_term(1e6, [(2.0, 0.1), (1.0, 10.0)]).creep_spectrum
+    with pytest.raises(ValueError, match="generalized_maxwell"):
+        vc.Rheology.prony(1e6, [(5e6, 1e-3)])
+    with pytest.raises(ValueError, match="sum of the shares"):
+        vc.Rheology.prony(1e6, [(0.6, 1.0), (0.6, 2.0)])
+
+
+def test_tables_are_read_by_pandas_without_an_option(tmp_path):
+    pandas = pytest.importorskip("pandas")
+    contact = ball()
+    history = vc.CsvHistory(tmp_path / "history.csv", contact, notes={"a": "b,c\n#"}, columns=["twice, or so [N]"])
+    for report in contact.follow(F(0.2), 0.3, dt=0.1):
+        history.record(contact, report, [2 * report.force])
+    PICKLED["swept"].write_csv(tmp_path / "swept.csv")
+    vc.write_fits(tmp_path / "fits.csv", [FIT])
+    vc.Study(BALL, RUBBER, F(1.0), 1.0, accuracy=1e-2).write_csv(tmp_path / "study.csv")
+    words = {"history": set(), "swept": {"warnings"}, "fits": {"model", "parameter", "unit", "scale of deviation", "warnings"}, "study": {"row"}}
+    for name, of_words in words.items():
+        frame = pandas.read_csv(tmp_path / f"{name}.csv")
+        numbers = set(frame.select_dtypes("number").columns)
+        assert len(frame) >= 2 and numbers | of_words == set(frame.columns) and len(numbers) >= 4, name
+    frame = pandas.read_csv(tmp_path / "history.csv")
+    assert frame["time [s]"].iloc[-1] == contact.time and frame["twice, or so [N]"].iloc[-1] == pytest.approx(0.4)
+
+
 def test_a_fit_of_a_list_keeps_what_was_of_its_curve():
     curves = [noisy(0), noisy(1)]
     fits = vc.Identification("zener", contact_point=[1e-9, True], noise="autoregressive").fit_each(curves)
@@ -334,14 +405,14 @@ def test_a_fit_of_a_list_keeps_what_was_of_its_curve():
 def test_values_are_equal_and_hashed_by_value():
     made = [
         lambda: vc.Grid((4, 8), 1.0), lambda: F(1.0), lambda: BALL + FLAT, lambda: vc.HeightMap(np.ones((2, 2)), 1.0), lambda: vc.Material(BODY, 0.3),
-        lambda: vc.Rheology.prony(1e6, np.array([[5e6, 1.0]])), lambda: vc.LoadHistory.ramp(F(0), F(1), 1.0), lambda: vc.InfluenceKernel.periodic(GRID),
+        lambda: vc.Rheology.generalized_maxwell(1e6, np.array([[5e6, 1.0]])), lambda: vc.LoadHistory.ramp(F(0), F(1), 1.0), lambda: vc.InfluenceKernel.periodic(GRID),
         lambda: vc.Shape.gap_on(GRID, np.zeros((8, 8))), lambda: vc.Attraction.dugdale(0.1, 1e-6), lambda: vc.TimeTemperature.arrhenius(1e5, 300.0),
     ]
     every = [make() for make in made]
     for k, make in enumerate(made):
         assert make() == every[k] and hash(make()) == hash(every[k])
         assert sum(one == every[k] for one in every) == 1
-    assert vc.Rheology.prony(1e6, [(5e6, 1.0)]) == vc.Rheology.prony(1e6, [[5e6, 1]]) != vc.Rheology.prony(1e6, [(5e6, 2.0)])
+    assert vc.Rheology.generalized_maxwell(1e6, [(5e6, 1.0)]) == vc.Rheology.generalized_maxwell(1e6, [[5e6, 1]]) != vc.Rheology.generalized_maxwell(1e6, [(5e6, 2.0)])
     assert len({make() for make in made} | set(every)) == len(made) and BALL != 3
 
 

@@ -134,7 +134,7 @@ def history_to_dataframe(self):
 
     # later ones read every digit by default
     exact = {"float_precision": "round_trip"} if int(pandas.__version__.split(".")[0]) < 3 else {}
-    return pandas.read_csv(self.path, comment="#", **exact)
+    return pandas.read_csv(self.path, **exact)
 
 
 def attach():

@@ -30,10 +30,10 @@ impl Fields<'_> {
     ///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
     ///     .build()?;
     /// contact.step(0.0, Load::force(0.1))?;
-    /// assert!(contact.fields().lateral_force(&sphere).iter().all(|force| force.abs() < 1.0e-12));
+    /// assert!(contact.fields().slope_force(&sphere).iter().all(|force| force.abs() < 1.0e-12));
     /// # Ok::<(), viscocontact::Error>(())
     /// ```
-    pub fn lateral_force(&self, shape: &dyn Geometry) -> [f64; 2] {
+    pub fn slope_force(&self, shape: &dyn Geometry) -> [f64; 2] {
         let (n2, [half1, half2]) = (self.grid().cells()[1], self.grid().spacing().map(|side| 0.5 * side));
         let rise = |ahead: f64, behind: f64| {
             let rise = ahead - behind;

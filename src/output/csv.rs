@@ -1,12 +1,12 @@
 //! The history of a run as a CSV table.
 
 use std::fs::{self, File};
-use std::io::{self, BufRead};
+use std::io::{self, BufRead, Write};
 use std::path::{Path, PathBuf};
 
 use crate::contact::StepReport;
 use crate::error::{Result, exact_length};
-use crate::file::{Appending, check_regular, failed};
+use crate::file::{Appending, check_regular, failed, replace};
 use crate::output::{Earlier, Kept, Metadata};
 use crate::run::Contact;
 
@@ -55,7 +55,7 @@ fn known(value: Option<f64>) -> String {
 
 /// A run as a CSV file with one row per step, each passed to the operating system when its `record` returns.
 ///
-/// The first line is `#` and the [`Metadata`] as JSON, the second the names of the columns with their units,
+/// The first line has the names of the columns with their units,
 /// separated by commas: `time [s]`, `step length [s]`, `force [N]`, `approach [m]`, `tilt 1 [rad]`, `tilt 2 [rad]`,
 /// `moment 1 [N m]`, `moment 2 [N m]`, `contact area [m2]`, `contact cells`, `mean pressure [Pa]`, `max pressure
 /// [Pa]`, cost and accuracy of the step as in [`StepReport`] (`time error` is empty where nothing was estimated), and
@@ -63,7 +63,8 @@ fn known(value: Option<f64>) -> String {
 /// on elastic states, or your own; without fields, moments and maximum pressure are empty. Where [ranks](crate::parallel) share out the contact, all of them make
 /// and write the history, and rank 0 has the file.
 /// [`Run::samples`](crate::run::Run::samples) has rows between the ends of steps: pass the contact and the report of each sample.
-/// Numbers have enough digits to be read back bitwise. In Python: `pandas.read_csv(path, comment="#")`.
+/// Numbers have enough digits to be read back bitwise. In Python: `pandas.read_csv(path)`. The [`Metadata`] are beside
+/// it as JSON, in a file with `.json` after the name: `history.csv.json`.
 ///
 /// ```
 /// use viscocontact::{output::{CsvHistory, Earlier, Metadata}, prelude::*};
@@ -112,7 +113,7 @@ impl CsvHistory {
         agreed(contact, check_names(&names, additional).map_err(unusable))?;
         let names: Vec<String> = names.iter().chain(additional).map(|name| quoted(name)).collect();
         let names = names.join(",");
-        let head = format!("# {}\n{names}\n", metadata.json(contact));
+        let (scene, json) = (beside(path), metadata.json(contact));
         let create = || {
             if earlier != Earlier::Refuse {
                 check_regular(path)?;
@@ -122,9 +123,10 @@ impl CsvHistory {
             }
             let file = if earlier == Earlier::Refuse { File::create_new(path) } else { File::create(path) };
             let mut file = Appending::new(file.map_err(|error| unusable(or_replace(error)))?);
-            if let Err(error) = file.append(head.as_bytes()) {
+            let head = file.append(format!("{names}\n").as_bytes()).map_err(unusable);
+            if let Err(error) = head.and_then(|()| replace(&scene, |out| writeln!(out, "{json}"))) {
                 let _ = fs::remove_file(path); // report the error of the write instead
-                return Err(unusable(error));
+                return Err(error);
             }
             Ok(file)
         };
@@ -156,6 +158,13 @@ impl CsvHistory {
     }
 }
 
+/// The file of the scene beside a history.
+fn beside(path: &Path) -> PathBuf {
+    let mut name = path.as_os_str().to_owned();
+    name.push(".json");
+    name.into()
+}
+
 /// The file of a history of these columns, cut off after the state of a contact.
 fn continued(path: &Path, names: &str, contact: &impl Contact) -> io::Result<Appending<File>> {
     let now = [contact.time(), contact.force(), contact.approach()];
@@ -166,15 +175,14 @@ fn continued(path: &Path, names: &str, contact: &impl Contact) -> io::Result<App
         end += line.len() as u64;
         let numbers: Vec<f64> = line.split(',').take(4).filter_map(|cell| cell.parse().ok()).collect();
         match (number, &numbers[..]) {
-            (0, _) if line.starts_with("# ") => kept.earlier = end,
-            (1, _) if line.trim_end_matches(['\n', '\r']) == names => kept.earlier = end,
-            (2.., [time, _, force, approach]) if kept.includes(end, [*time, *force, *approach], now) => {}
+            (0, _) if line.trim_end_matches(['\n', '\r']) == names => kept.earlier = end,
+            (1.., [time, _, force, approach]) if kept.includes(end, [*time, *force, *approach], now) => {}
             _ => break,
         }
         number += 1;
         line.clear();
     }
-    if number < 2 {
+    if number == 0 {
         let reason = "it is no history with these columns: Earlier::Replace replaces it";
         return Err(io::Error::new(io::ErrorKind::InvalidData, reason));
     }

@@ -35,7 +35,7 @@
 //! Every call that computes is a call of all ranks, in the same order and with the same arguments: steps, runs, and
 //! observations that look at all cells ([`moment`](crate::fields::Fields::moment),
 //! [`max_pressure`](crate::fields::Fields::max_pressure), [`contact_area`](crate::ViscoelasticContact::contact_area),
-//! [`lateral_force`](crate::fields::Fields::lateral_force), [`profile`](crate::fields::Fields::profile)), files and
+//! [`slope_force`](crate::fields::Fields::slope_force), [`profile`](crate::fields::Fields::profile)), files and
 //! checkpoints. What a rank has by itself may be read by one
 //! alone: time, force, approach, tilt, contact cells, local rows.
 //!

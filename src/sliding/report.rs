@@ -16,7 +16,7 @@ pub struct SlidingReport {
     pub force: f64,
     /// Approach \[m\].
     pub approach: f64,
-    /// Force that keeps the indenter moving, along x1 and x2 \[N\]: −∬ p ∇u.
+    /// Force that moves the indenter, along x1 and x2 \[N\]: −∬ p ∇u.
     pub lateral_force: [f64; 2],
     /// Cells in contact.
     pub contact_cells: usize,

@@ -33,6 +33,7 @@ impl SlidingSweep {
 
 /// A state of a sweep.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct SweptState {
     /// Temperature \[K\], of sweeps over temperatures.
@@ -45,6 +46,7 @@ pub struct SweptState {
 
 /// The states of a sweep, made by [`SteadySliding::sweep`].
 #[derive(Debug, Clone, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SlidingTable(Vec<SweptState>);
 
 impl SteadySliding {

@@ -306,7 +306,7 @@ impl AnyScene {
         let bits = |field: Vec<f64>| field.into_iter().map(f64::to_bits).collect::<Vec<_>>();
         let whole = |field: &[f64]| Ok::<_, Error>(bits(contact.fields().gathered(field, 0)?.unwrap_or_default()));
         let ([moment1, moment2], [tilt1, tilt2]) = (contact.fields().moment(), contact.tilt());
-        let [force1, force2] = contact.fields().lateral_force(&self.shape);
+        let [force1, force2] = contact.fields().slope_force(&self.shape);
         let mut probes = [-1.0; 3];
         if self.probed {
             // after a step that failed, the state before it is not kept

@@ -166,7 +166,7 @@ fn nan_is_named_or_returned_elsewhere() {
     let mut contact = contact(1);
     contact.step(0.0, Load::force(0.2)).unwrap();
     let hole = FnGeometry::new(|x1, _| if x1 > 0.0 { f64::NAN } else { 0.0 });
-    assert!(contact.fields().lateral_force(&hole)[0].is_nan());
+    assert!(contact.fields().slope_force(&hole)[0].is_nan());
 
     #[derive(Debug)]
     struct Unknown(f64);

@@ -180,9 +180,9 @@ mod csv {
             steps += 1;
             // read while the writer is still at work
             let text = text_of(&path);
-            let json = text.lines().next().unwrap().strip_prefix("# ").unwrap();
-            assert_eq!(json, scene().json(contact));
-            let mut table = ::csv::ReaderBuilder::new().comment(Some(b'#')).from_reader(text.as_bytes());
+            let json = text_of(&folder.join("history.csv.json"));
+            assert_eq!(json, scene().json(contact) + "\n");
+            let mut table = ::csv::Reader::from_reader(text.as_bytes());
             let names = table.headers().unwrap().clone();
             let rows: Vec<_> = table.records().map(Result::unwrap).collect();
             assert_eq!(rows.len(), steps);
@@ -210,7 +210,7 @@ mod csv {
         });
         let report = contact.step(0.1, Load::force(0.7)).unwrap();
         assert!(matches!(history.record(&contact, &report, &[]), Err(Error::WrongLength { expected: 2, .. })));
-        assert_eq!(text_of(&path).lines().count(), 5);
+        assert_eq!(text_of(&path).lines().count(), 4);
     }
 
     #[test]
@@ -229,6 +229,12 @@ mod csv {
         let refused = CsvHistory::create(&path, &scene(), &contact, &[], Earlier::Refuse).unwrap_err();
         assert_eq!(refused.kind(), ErrorKind::File);
         assert_eq!(text_of(&path), "years of work");
+        assert_eq!(folder.names(), ["history.csv"]);
+        // without a place for the scene there is no table of it
+        let beside = folder.join("other.csv");
+        fs::create_dir(folder.join("other.csv.json")).unwrap();
+        let refused = CsvHistory::create(&beside, &scene(), &contact, &[], Earlier::Refuse).unwrap_err();
+        assert!(refused.to_string().contains("other.csv.json") && !beside.exists(), "{refused}");
     }
 }
 
@@ -325,10 +331,10 @@ fn full_disks_leave_whole_files_and_print_nothing() {
     assert!(child.status.success() && told.is_empty(), "{told}");
     let (text, rows) = (text_of(&folder.join("history.csv")), text_of(&folder.join("rows")).parse::<usize>().unwrap());
     assert!(rows > 50 && text.len() <= 32768, "{rows} rows, {} bytes", text.len());
-    let (head, lines): (Vec<_>, Vec<_>) = (text.lines().take(2).collect(), text.lines().skip(2).collect());
-    assert_eq!((head.len(), lines.len()), (2, rows));
-    assert!(text.ends_with('\n') && lines.iter().all(|line| *line == lines[0]));
-    assert_eq!(folder.names(), ["few", "history.csv", "npz", "rows", "vtk"]);
+    let lines: Vec<_> = text.lines().skip(1).collect();
+    assert_eq!(lines.len(), rows);
+    assert!(text.starts_with("time [s],") && text.ends_with('\n') && lines.iter().all(|line| *line == lines[0]));
+    assert_eq!(folder.names(), ["few", "history.csv", "history.csv.json", "npz", "rows", "vtk"]);
     assert_eq!(
         fs::read_dir(folder.join("npz")).unwrap().count() + fs::read_dir(folder.join("vtk")).unwrap().count(),
         0

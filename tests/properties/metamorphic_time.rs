@@ -166,7 +166,7 @@ mod frames {
                 assert_same("pressure", moving.pressure(), &moved(still.pressure()), 0.0, 1e-6)?;
                 assert_same("displacement", moving.fields().displacement(), &moved(still.fields().displacement()), 0.0, 1e-7)?;
                 assert_same("approach", &[moving.approach()], &[along.step.approach], 0.0, 1e-7)?;
-                let lateral = moving.fields().lateral_force(&shape);
+                let lateral = moving.fields().slope_force(&shape);
                 assert_same("lateral force", &lateral, &along.lateral_force, along.step.force, 1e-6)?;
             }
         }

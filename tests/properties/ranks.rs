@@ -202,7 +202,7 @@ fn files_of_ranks_are_those_of_one_process() {
         let areas = write(&scene, scene.contact(None).unwrap(), &root).unwrap();
         assert!(areas.len() == 2 && areas.iter().all(|&area| area > 0.0), "{}", scene.name);
         let expected = files(&root);
-        assert_eq!(expected.len(), 7, "{:?}", expected.keys());
+        assert_eq!(expected.len(), 8, "{:?}", expected.keys());
         for size in [1, 3, 9] {
             fs::remove_dir_all(&root).unwrap();
             let written = Threads::run(size, |ranks| write(&scene, scene.contact(Some(&ranks))?, &root)).unwrap();

@@ -54,7 +54,7 @@ fn frames_agree_on_a_half_space() {
         }
         assert!((fixed.approach() / moving.approach() - 1.0).abs() < 1e-7, "{step}");
     }
-    assert!(moving.fields().lateral_force(&at(1.25e-3))[0] > 0.01 * moving.force());
+    assert!(moving.fields().slope_force(&at(1.25e-3))[0] > 0.01 * moving.force());
 }
 
 /// What force and lateral force do at a contact is what the pressure does at the surface: Σ p Δu = W Δω + F Δs, to second
@@ -73,8 +73,7 @@ fn the_work_of_the_loads_is_the_work_at_the_surface() {
             |contact: &ViscoelasticContact| (contact.pressure().to_vec(), contact.fields().displacement().to_vec());
         for _ in 0..steps {
             let (p, u) = state(&contact);
-            let before =
-                (contact.fields().lateral_force(&travel.shape_at(contact.time()).unwrap()), contact.approach());
+            let before = (contact.fields().slope_force(&travel.shape_at(contact.time()).unwrap()), contact.approach());
             let from = travel.position(contact.time()).unwrap();
             let report = contact.step_along(&travel, dt, load).unwrap();
             let (q, w) = state(&contact);

@@ -53,7 +53,7 @@ fn a_half_space_may_flow() {
         }
     }
     let exact = dense.solve_by(&table).unwrap();
-    let lateral = sliding.fields().lateral_force(&shape)[0] / force;
+    let lateral = sliding.fields().slope_force(&shape)[0] / force;
     let errors = [report.approach / exact.approach - 1.0, lateral / exact.friction - 1.0];
     println!("{errors:?} {report}");
     assert!(errors.iter().all(|error| error.abs() < 1e-6), "{errors:?}");

@@ -24,7 +24,7 @@ fn a_rolling_cylinder_is_hunters() {
         let report = sliding.at(velocity, Load::force(force)).unwrap();
         println!("l/w {}, {cells} cells: {} sets, {} transforms", reach / half, report.sets, report.transforms);
         assert!(report.transforms <= 600);
-        [report.friction(), sliding.fields().lateral_force(&cylinder)[0] / force]
+        [report.friction(), sliding.fields().slope_force(&cylinder)[0] / force]
     };
     // the closed form (`RollingCylinder`) with 40 digits: of a long memory most cancel
     for (over_half, exact, most) in [

@@ -212,7 +212,7 @@ impl Scene {
     /// Relative errors of friction and approach, of the same cells and steps. Friction is relative to the greater of two that the mesh
     /// cannot tell apart: from the slope of the shape over each cell, and over two.
     fn errors(&self, contact: &ViscoelasticContact) -> [f64; 2] {
-        let lateral = self.velocity * contact.fields().lateral_force(&self.shape())[self.axis.index()];
+        let lateral = self.velocity * contact.fields().slope_force(&self.shape())[self.axis.index()];
         let exact = self.reference(if self.linear { Time::Steps } else { Time::Corrected });
         let exact = exact.expect("the dense problem has a solution");
         let count = exact.pressure.len() / self.across;
@@ -313,7 +313,7 @@ fn a_body_without_elastic_response_arrives() {
     sliding.below = Below::Line(1.0);
     sliding.terms = terms.iter().map(|&(compliance, time)| (0.25 * compliance, 0.1 * time)).collect();
     let exact = sliding.solve(Time::Exact).unwrap();
-    let friction = contact.fields().lateral_force(&cylinder)[0] / contact.force();
+    let friction = contact.fields().slope_force(&cylinder)[0] / contact.force();
     let errors = [friction / exact.friction - 1.0, contact.approach() / exact.approach - 1.0];
     println!("{errors:?}");
     assert!(errors[0].abs() < 0.02 && errors[1].abs() < 2e-3, "{errors:?}");

@@ -702,7 +702,9 @@ fn a_resumed_run_continues_its_files() {
                 go_on(&name, Some(step));
                 assert_eq!(go_on(&name, None), whole);
                 let read = |path: String| fs::read(folder.join(path)).unwrap();
-                assert_eq!(read(format!("{name}.csv")), read("whole.csv".into()), "after {step} steps");
+                for end in ["csv", "csv.json"] {
+                    assert_eq!(read(format!("{name}.{end}")), read(format!("whole.{end}")), "after {step} steps");
+                }
                 let frames = |name: &str| {
                     let mut paths: Vec<_> =
                         fs::read_dir(folder.join(name)).unwrap().map(|entry| entry.unwrap().file_name()).collect();

@@ -202,7 +202,7 @@ fn histories_of_states_are_written_and_drawn() {
     let report = smooth.report(0.0, Load::force(0.0));
     assert_eq!(table.record(&smooth, &report, &[0.0]).unwrap_err().kind(), ErrorKind::File);
     let text = std::fs::read_to_string(path).unwrap();
-    let rows: Vec<Vec<&str>> = text.lines().skip(1).map(|line| line.split(',').collect()).collect();
+    let rows: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
     assert_eq!(rows.len(), 4);
     let field = |row: usize, name: &str| rows[row][rows[0].iter().position(|heading| *heading == name).unwrap()];
     let value = |row: usize, name: &str| field(row, name).parse::<f64>().unwrap();

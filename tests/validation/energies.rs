@@ -138,7 +138,7 @@ fn energies_are_columns_of_histories() {
     let energies = balance.record(&contact, &report).unwrap();
     history.record(&contact, &report, &energies.values()).unwrap();
     let text = std::fs::read_to_string(&path).unwrap();
-    let rows: Vec<Vec<&str>> = text.lines().skip(1).map(|line| line.split(',').collect()).collect();
+    let rows: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
     let column = rows[0].iter().position(|&name| name.trim_matches('"') == "stored energy [J]").unwrap();
     assert_eq!(rows[1][column].parse::<f64>().unwrap(), energies.stored);
 

@@ -38,7 +38,7 @@ impl Rolled {
     }
 
     fn friction(&self) -> f64 {
-        self.contact.fields().lateral_force(&self.shape)[0] / self.contact.force()
+        self.contact.fields().slope_force(&self.shape)[0] / self.contact.force()
     }
 
     fn width(&self) -> f64 {

@@ -89,7 +89,7 @@ fn lateral_forces_of_two_indenters_are_opposite() {
             .build()
             .unwrap();
         contact.step(0.0, [own.3, other.3].map(Load::force)).unwrap();
-        contact.fields().lateral_force(&Shifted::new(Sphere::new(own.1).unwrap(), [own.2, 0.0]).unwrap())
+        contact.fields().slope_force(&Shifted::new(Sphere::new(own.1).unwrap(), [own.2, 0.0]).unwrap())
     };
     let (left, right) = ([5.0e-3, -0.6e-3, 0.1], [10.0e-3, 0.6e-3, 0.2]);
     let (on_left, on_right) = (lateral(left, right), lateral(right, left));

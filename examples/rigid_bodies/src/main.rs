@@ -223,7 +223,7 @@ impl Scene {
         self.floor.step(args.dt, &loads)?;
 
         let [(ball_force, _), (block_force, moment)] = self.forces();
-        let [x, y] = self.floor.fields().lateral_force(&cap);
+        let [x, y] = self.floor.fields().slope_force(&cap);
         // all pressure under the ball acts towards its centre
         self.pressure[0] = Push { force: Vector::new(-x, -y, ball_force), torque: Vector::ZERO };
         self.pressure[1] = Push::at(block_force * Vector::Z, face, block);

@@ -21,7 +21,7 @@ pub struct TravelReport {
     /// Position of the shape at the start of the step \[m\].
     pub from: [f64; 2],
     /// Lateral force that moves the shape \[N\], see
-    /// [`Fields::lateral_force`](crate::fields::Fields::lateral_force).
+    /// [`Fields::slope_force`](crate::fields::Fields::slope_force).
     pub lateral_force: [f64; 2],
     /// Mean power over the step that the lateral motion feeds into the bodies \[W\]: the work of the pressure on the
     /// surface, less the work of force and moments. It equals lateral force times velocity, but includes the rim of a
@@ -51,7 +51,7 @@ impl ViscoelasticContact {
         let gap = Gap::new(vec![travel.gap(&shape, self.grid())?], self.grid())?;
         let before = self.load_and_motion();
         let step = self.take(Step { indenter: Arc::new(Indenter::new(gap, 1)), ..requested })?;
-        let lateral_force = self.fields().lateral_force(&shape);
+        let lateral_force = self.fields().slope_force(&shape);
         let power = if dt > 0.0 { self.work_along(before) / dt } else { 0.0 };
         Ok(TravelReport { step, position, from, lateral_force, power })
     }

@@ -76,7 +76,7 @@ impl ViscoelasticContact {
     /// for _ in 0..60 {
     ///     contact.step_over([1, 0], grid.spacing()[0] / 0.05, Load::force(0.5))?;
     /// }
-    /// let [resistance, across] = contact.fields().lateral_force(&shape);
+    /// let [resistance, across] = contact.fields().slope_force(&shape);
     /// assert!(resistance > 0.005 && across.abs() < 1.0e-9);
     /// # Ok::<(), viscocontact::Error>(())
     /// ```
