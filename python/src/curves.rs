@@ -199,7 +199,7 @@ impl Curve {
         Ok(dict! { py; of { stiffness, contact_depth, area, modulus } })
     }
 
-    /// Checks points, signs and units; raises ValueError with the cure.
+    /// Checks points, signs and units; raises ValueError with the remedy.
     fn check(&self) -> PyResult<()> {
         self.of.check().or_raise()
     }
