@@ -21,7 +21,7 @@ pub(crate) use basis::{FittedSeries, Sample};
 pub use report::{FitReport, FitSample, FitWarning};
 pub(in crate::rheology) use report::{KNOWN, MOST_MISFIT};
 
-pub(in crate::rheology) use polish::polish;
+pub(in crate::rheology) use polish::{leverage, polish};
 
 /// The class of series to search.
 #[derive(Debug, Clone)]

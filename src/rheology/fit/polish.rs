@@ -48,6 +48,16 @@ pub(in crate::rheology) fn polish(
     best
 }
 
+/// The share of a sample in its own fitted value, at a minimum: by the strengths, of given times.
+pub(in crate::rheology) fn leverage(series: &FittedSeries, samples: &[Sample], search: &Search, k: usize) -> f64 {
+    let (all, _) = linearise(series, samples, search);
+    let ends = all.columns() - 2 * series.terms.len();
+    let strengths: Vec<usize> = (0..ends).chain((ends..all.columns()).step_by(2)).collect();
+    let (jacobian, mut unit) = (all.of_columns(&strengths), vec![0.0; samples.len()]);
+    unit[k] = -1.0;
+    damped_step(&jacobian, &unit, 1e-12).iter().enumerate().map(|(j, step)| jacobian[(k, j)] * step).sum()
+}
+
 /// Derivatives of the misfits by ln constant, ln slope, and each (ln strength, ln time), and the misfits.
 fn linearise(series: &FittedSeries, samples: &[Sample], search: &Search) -> (Matrix, Vec<f64>) {
     let [constant_moves, slope_moves] = moving_ends(series, search);
