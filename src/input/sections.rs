@@ -46,8 +46,9 @@ pub(super) fn sections(text: &Text, names: &TextRow, first: Section) -> Vec<Sect
         let between = rows[start..at].iter().rev().take_while(|row| is_between(row, &rows[start]));
         let end = between.last().map_or(row.line, |row| row.line);
         sections.last_mut().into_iter().for_each(|before| before.end = end);
-        let (width, first) = rows.get(next).map_or((0, u64::MAX), |row| (row.fields.len(), row.line));
-        sections.push(Section { headings: headings(row, units, width), line: row.line, first, end: u64::MAX });
+        let first = rows.get(next);
+        let (headings, first) = (headings(row, units, first), first.map_or(u64::MAX, |row| row.line));
+        sections.push(Section { headings, line: row.line, first, end: u64::MAX });
         start = next;
     }
     sections
@@ -88,9 +89,18 @@ pub(super) fn merged(row: &TextRow, width: usize) -> Vec<String> {
     merged
 }
 
-/// Headings of a table of some width, with the units below them.
-pub(super) fn headings(names: &TextRow, units: Option<&TextRow>, width: usize) -> Vec<String> {
-    with_units(merged(names, width), units.map(|row| merged(row, width)))
+/// Headings of a table that begins with this row, with the units below them.
+pub(super) fn headings(names: &TextRow, units: Option<&TextRow>, first: Option<&TextRow>) -> Vec<String> {
+    let width = first.map_or(0, |row| row.fields.len());
+    let [mut names, mut units] = [Some(names), units].map(|row| row.map_or(Vec::new(), |row| merged(row, width)));
+    // `Interval data:` above the first column, or before it
+    let is_before = names[0].ends_with(':') && names.len() == width + 1;
+    if is_before && first.is_some_and(|row| row.is_number(0)) {
+        for row in [&mut names, &mut units] {
+            row.drain(..row.len().min(1));
+        }
+    }
+    with_units(names, Some(units))
 }
 
 pub(super) fn with_units(mut names: Vec<String>, units: Option<Vec<String>>) -> Vec<String> {

@@ -96,7 +96,7 @@ impl TextTable {
         let first = from.first().map_or(u64::MAX, |row| row.line);
         let mut commented = false;
         let (headings, line) = match names {
-            Some(names) => (headings(names, units, width), names.line),
+            Some(names) => (headings(names, units, from.first()), names.line),
             None => {
                 let (mut names, mut units) = (None, None);
                 for row in text.comments_before(first) {

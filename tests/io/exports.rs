@@ -2,7 +2,7 @@
 
 use viscocontact::input::{Quantity, TextTable, WantedColumn};
 use viscocontact::rheology::{Experiment, Isotherm, Measurements, TableError, Units};
-use viscocontact::{Error, Result, TextError, TextFormat};
+use viscocontact::{Delimiter, Error, Result, TextError, TextFormat};
 
 const ROWS: [[f64; 3]; 4] = [[1.0, 100.0, 10.0], [3.0, 120.0, 15.0], [10.0, 150.0, 20.0], [30.0, 180.0, 20.0]];
 
@@ -72,7 +72,9 @@ fn rows_of_units_are_read_with_unknown_ones() {
     assert_eq!(one.headings()[7], "Torque [mN·m]");
     assert_same(&rows(&table(&step("Sweep", 25.0, 1.0))).unwrap(), &scaled(1.0));
     // no row of units: what has a number, or letters for symbols
-    for text in ["t\tJ\tN\n1\t1\ts\n2\t2\ts\n3\t3\ts\n4\t4\ts\n", "made\tby\thand\nh\tF\tt\n1\t2\t3\n2\t3\t4\n3\t4\t5\n"] {
+    for text in
+        ["t\tJ\tN\n1\t1\ts\n2\t2\ts\n3\t3\ts\n4\t4\ts\n", "made\tby\thand\nh\tF\tt\n1\t2\t3\n2\t3\t4\n3\t4\t5\n"]
+    {
         let table = table(text);
         assert!(table.headings().iter().all(|heading| !heading.contains('[')), "{table}");
         assert_eq!(table.to_string().split(' ').next(), Some(if text.starts_with('t') { "4" } else { "3" }));
@@ -106,7 +108,9 @@ fn sections_with_the_same_headings_are_joined_and_told() {
 fn what_is_no_section_is_refused_where_it_is() {
     let (one, two) = (interval(1, 1.0), interval(2, 0.8));
     // the last row before a section, with a fault, belongs to the table
-    for spoiled in ["\t4\t30\t180\t20\n", "\t4\t30\toops\t20\t0.1\t1\t0.63\tME-,taD\n", "\t4\t3O\t180\t2O\t0.1\t1\t0.63\t\n"] {
+    for spoiled in
+        ["\t4\t30\t180\t20\n", "\t4\t30\toops\t20\t0.1\t1\t0.63\tME-,taD\n", "\t4\t3O\t180\t2O\t0.1\t1\t0.63\t\n"]
+    {
         let start = one.rfind("\t4\t30").unwrap();
         let error = rows(&table(&format!("{}{spoiled}{two}", &one[..start]))).unwrap_err();
         let line = match error {
@@ -117,14 +121,26 @@ fn what_is_no_section_is_refused_where_it_is() {
     }
 }
 
+/// A label before the headings, to which no field of the rows belongs.
+#[test]
+fn labels_before_headings_are_no_columns() {
+    let labelled = interval(1, 1.0).replace("\n\t1\t", "\n1\t").replace("\n\t2\t", "\n2\t");
+    let labelled = labelled.replace("\n\t3\t", "\n3\t").replace("\n\t4\t", "\n4\t");
+    assert_same(&rows(&table(&labelled)).unwrap(), &scaled(1.0));
+    assert_eq!(table(&labelled).headings()[0], "Point No.");
+    // of one row alone, it is a mark that is lost
+    let error = rows(&table(&interval(1, 1.0).replace("\n\t1\t", "\n1\t"))).unwrap_err();
+    assert!(matches!(error, Error::Text(TextError::Columns { .. })), "{error}");
+}
+
 /// Steps with other columns or units are chosen from: the first has no moduli, or others.
 #[test]
 fn sections_with_other_headings_are_chosen_from() {
     let (one, two) = (interval(1, 1.0), interval(2, 0.8));
     for (other, factor) in [("Shear Strain", 1.0), ("[Pa]", 1e3)] {
         let both = table(&(one.clone() + &two.replace(other, if factor > 1.0 { "[kPa]" } else { "Shear Stress" })));
-        assert_eq!(rows(&both).unwrap_err(), Error::Text(TextError::Section { line: 14, headings: 4 }));
-        assert!(both.to_string().contains("TextTable::section"), "{both}");
+        assert_eq!(rows(&both).unwrap_err(), Error::Text(TextError::Section { line: 15, headings: 4 }));
+        assert!(both.to_string().contains("2 sections with different headings"), "{both}");
         for (number, factor) in [(1, 1.0), (2, 0.8 * factor)] {
             let own = both.clone().section(number).unwrap();
             assert_same(&rows(&own).unwrap(), &scaled(factor));
@@ -180,9 +196,16 @@ fn frequencies_in_headings_are_told() {
 #[test]
 fn preambles_may_be_long() {
     for lines in [3, 150, 990, 1500, 9000] {
-        let preamble: String = (0..lines).map(|k| format!("Calibration {k}\t{k}.5 mrad/N.m, or less\n")).collect();
+        let preamble: String = (0..lines).map(|k| format!("Calibration\t{k}.5 mrad/N.m, or less\n")).collect();
         assert_same(&rows(&table(&(preamble + &step("a", 25.0, 1.0)))).unwrap(), &scaled(1.0));
     }
+    // two numbers in each line, between blanks: the delimiter has to be stated
+    let preamble: String = (0..150).map(|k| format!("Calibration {k}\t{k}.5 mrad/N.m, or less\n")).collect();
+    let text = preamble + &step("a", 25.0, 1.0);
+    let read = |format| Measurements::from_csv_reader(Experiment::Dynamic, text.as_bytes(), Units::OF_HEADINGS, format);
+    assert!(read(TextFormat::default()).is_err());
+    let stated = TextTable::read(text.as_bytes(), TextFormat::default().with_delimiter(Delimiter::Tab)).unwrap();
+    assert_same(&rows(&stated).unwrap(), &scaled(1.0));
 }
 
 #[test]
