@@ -4,7 +4,7 @@
 //! that has a large modulus at t = 0, which nothing else bounds and which slows the creep.
 
 use super::data::{DEVIATIONS, MOST_NOISE};
-use crate::rheology::fit::{FittedSeries, Sample, Search, leverage};
+use crate::rheology::fit::{FittedSeries, Sample, Search, damped_step, linearise};
 use crate::rheology::table::measured::FLOOR;
 
 /// Uncertainties and systematic misfits below this need no warning.
@@ -98,6 +98,16 @@ impl Search {
         let deviation = 1.0 / (1.0 + fit.misfit(&sample)) - 1.0;
         (fit, others, deviation)
     }
+}
+
+/// The share of a sample in its own fitted value, at a minimum: by the strengths, of given times.
+fn leverage(series: &FittedSeries, samples: &[Sample], search: &Search, k: usize) -> f64 {
+    let (all, _) = linearise(series, samples, search);
+    let ends = all.columns() - 2 * series.terms.len();
+    let strengths: Vec<usize> = (0..ends).chain((ends..all.columns()).step_by(2)).collect();
+    let (jacobian, mut unit) = (all.of_columns(&strengths), vec![0.0; samples.len()]);
+    unit[k] = -1.0;
+    damped_step(&jacobian, &unit, 1e-12).iter().enumerate().map(|(j, step)| jacobian[(k, j)] * step).sum()
 }
 
 /// The relative deviation of an end from the parabola through its neighbours, on logarithmic axes: of coarse tables, no
