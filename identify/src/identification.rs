@@ -234,10 +234,8 @@ impl Identification {
 
     /// The problem of some curves.
     pub(crate) fn problem(&self, curves: Vec<Curve>) -> Result<Problem> {
-        if let Some(sigma) = self.sigma {
-            positive("standard deviation of the noise", sigma)?;
-        }
-        Ok(Problem { watch: self.watch.clone(), ..Problem::new(self.model, &self.chosen, curves, &self.noise)? })
+        self.check()?;
+        Ok(Problem { watch: self.watch.clone(), ..Problem::new(self.model, &self.chosen, curves, self.noise)? })
     }
 
     /// The problem of experiments that have no data yet.

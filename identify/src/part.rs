@@ -1,6 +1,5 @@
 //! One curve of a least-squares problem.
 
-use crate::error::Result;
 use crate::experiment::Curve;
 use crate::forward::Tip;
 use crate::noise::{Noise, Whitening};
@@ -26,8 +25,7 @@ pub(crate) struct Part {
 }
 
 impl Part {
-    pub(crate) fn new(index: usize, curve: Curve, noise: &Noise) -> Result<Part> {
-        let whitening = Whitening::of(noise)?;
+    pub(crate) fn new(index: usize, curve: Curve, noise: Noise) -> Part {
         let Protocol { times, drive } = &curve.experiment.protocol;
         let last = times.len() - 1;
         let speed = |k: usize| {
@@ -36,7 +34,7 @@ impl Part {
         };
         let (speed, outliers) = ((0..=last).map(speed).collect(), vec![1.0; times.len()]);
         let tip = Tip::new(index, &curve.experiment.tip, curve.experiment.surface);
-        Ok(Part { curve, whitening, scale: 1.0, weight: 1.0, outliers, tip, speed })
+        Part { curve, whitening: Whitening::of(noise), scale: 1.0, weight: 1.0, outliers, tip, speed }
     }
 
     /// At most so many means of neighbouring samples, as if their noise were white.

@@ -47,8 +47,18 @@ pub(crate) struct Problem {
     pub(crate) watch: Watch,
 }
 
+/// A curve by a model, at each sample.
+#[derive(Clone, Debug)]
+pub(crate) struct Response {
+    pub(crate) samples: Vec<Sample>,
+    /// The force that is measured \[N\].
+    pub(crate) force: Vec<f64>,
+    /// Measured less modelled force \[N\].
+    pub(crate) residuals: Vec<f64>,
+}
+
 impl Problem {
-    pub(crate) fn new(model: Model, chosen: &Chosen, curves: Vec<Curve>, noise: &Noise) -> Result<Problem> {
+    pub(crate) fn new(model: Model, chosen: &Chosen, curves: Vec<Curve>, noise: Noise) -> Result<Problem> {
         if curves.is_empty() {
             return Err(Error::TooFewPoints { points: 0, parameters: model.parameters().len() });
         }
@@ -57,7 +67,7 @@ impl Problem {
         let shortest = times().flat_map(|t| t.windows(2).map(|w| w[1] - w[0])).fold(f64::INFINITY, f64::min);
         let window = [shortest, times().map(|t| t[t.len() - 1] - t[0]).fold(0.0, f64::max)];
         let part = |(index, curve): (usize, Curve)| Part::new(index, curve, noise);
-        let parts = curves.into_iter().enumerate().map(part).collect::<Result<_>>()?;
+        let parts = curves.into_iter().enumerate().map(part).collect();
         Ok(Problem {
             model,
             parts,
@@ -265,17 +275,12 @@ impl Problem {
         contact.enumerate().map(of).collect()
     }
 
-    /// Contact, force and residuals of a curve at each sample.
-    pub(crate) fn response(
-        &self,
-        curve: usize,
-        values: &[f64],
-        prony: &Prony,
-    ) -> Result<(Vec<Sample>, Vec<f64>, Vec<f64>)> {
+    /// The response of a curve.
+    pub(crate) fn response(&self, curve: usize, values: &[f64], prony: &Prony) -> Result<Response> {
         let samples = self.samples(curve, values, prony)?;
         let force = self.measured(curve, values, samples.iter().map(|sample| sample.force));
         let residuals = self.parts[curve].curve.force.iter().zip(&force).map(|(data, force)| data - force).collect();
-        Ok((samples, force, residuals))
+        Ok(Response { samples, force, residuals })
     }
 
     /// The data of a curve without offset, drift, tilt and drag.
@@ -283,12 +288,6 @@ impl Problem {
         let data = &self.parts[curve].curve.force;
         let rest = self.measured(curve, values, data.iter().map(|_| 0.0));
         data.iter().zip(rest).map(|(data, rest)| data - rest).collect()
-    }
-
-    /// The modelled force of one curve.
-    pub(crate) fn force(&self, curve: usize, values: &[f64], prony: &Prony) -> Result<Vec<f64>> {
-        let contact = self.each(curve, values, prony, |contact| contact.force().value())?;
-        Ok(self.measured(curve, values, contact.into_iter()))
     }
 
     /// Columns of the curves, made white, one after the other.
@@ -306,8 +305,7 @@ impl Problem {
         let prony = self.prony(&values)?;
         let deviations = |curve: usize| {
             self.watch.goes_on()?;
-            let force = self.force(curve, &values, &prony)?;
-            Ok(force.iter().zip(&self.parts[curve].curve.force).map(|(force, data)| force - data).collect())
+            Ok(self.response(curve, &values, &prony)?.residuals.iter().map(|rest| -rest).collect())
         };
         let columns: Vec<Vec<f64>> = (0..self.parts.len()).map(deviations).collect::<Result<_>>()?;
         Ok(self.white(columns))

@@ -84,9 +84,8 @@ fn scaled(problem: &Problem, values: &mut [f64], rounds: usize) -> Result<f64> {
         let (mut product, mut square, mut data_square) = (0.0, 0.0, 0.0);
         for (curve, part) in problem.parts.iter().enumerate() {
             let samples = problem.samples(curve, values, &prony)?;
-            let rest = problem.measured(curve, values, samples.iter().map(|_| 0.0));
-            for ((sample, data), rest) in samples.iter().zip(&part.curve.force).zip(rest) {
-                let (force, data) = (part.scale * sample.force, part.scale * (data - rest));
+            for (sample, data) in samples.iter().zip(problem.bare(curve, values)) {
+                let (force, data) = (part.scale * sample.force, part.scale * data);
                 product += force * data;
                 square += force * force;
                 data_square += data * data;

@@ -105,7 +105,7 @@ impl Fit {
     ) -> PyResult<Fit> {
         let (coordinates, noise, means, iterations, above) = state;
         let (curves, tips) = several(curves)?;
-        let state = id::FitState::new(coordinates, noise, means, iterations, above);
+        let state = id::FitState { coordinates, noise, means, iterations, above };
         let own = of_curve.map_or_else(|| by.get().of.clone(), |curve| by.get().of.of_curve(curve));
         Ok(Fit { fit: state.fit(&own, &curves).or_raise()?, by: by.unbind(), of_curve, tips })
     }

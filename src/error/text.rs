@@ -5,7 +5,8 @@ pub enum TextError {
     /// A line has the wrong number of columns.
     #[error(
         "line {line}: {found} columns separated by {delimiter}, but {expected} are needed ({columns}); \
-        TextFormat::with_delimiter states another delimiter; if another table begins here, split the file"
+        TextFormat::with_delimiter states another delimiter; if another table begins here, split the file; of a row \
+        that is cut off, leave the line out by # at its beginning"
     )]
     Columns {
         /// The line, from 1.
@@ -101,10 +102,10 @@ pub enum TextError {
         headings: u64,
     },
 
-    /// The headings of a table are repeated with other units, so that its sections cannot be joined.
+    /// A section has other headings or units, so that it cannot be joined to the table.
     #[error(
-        "line {line} repeats the headings of line {headings}, but with other units below them: write both in the same \
-        units, or split the file"
+        "line {line} begins a section with other headings or units than those of line {headings}: choose one by \
+        TextTable::section, or split the file"
     )]
     Section {
         /// The line of the headings of the section, from 1.

@@ -1,5 +1,6 @@
 //! The columns that a reader needs, found by their headings and units.
 
+use std::cell::OnceCell;
 use std::fmt;
 
 use super::heading::{UnitOf, begins_with, symbol, unit_of};
@@ -125,8 +126,9 @@ impl TextTable {
     /// The numbers of `columns` in every row, in the units of the file.
     ///
     /// # Errors
-    /// If a row has another number of columns than the headings (or than `columns`, without headings), or a field is
-    /// not a number, each with its line ([`TextError`]).
+    /// If a row has another number of columns than the headings (or than `columns`, without headings), but for words
+    /// that are lacking at its end; if a field is not a number; each with its line ([`TextError`]); or if a section has
+    /// other headings ([`TextError::Section`]).
     pub fn rows(&self, columns: &[TakenColumn]) -> Result<Vec<TableRow>, TextError> {
         self.rows_by(columns, |row, column| row.number(column))
     }
@@ -143,10 +145,24 @@ impl TextTable {
         } else {
             self.headings.iter().map(String::as_str).collect()
         };
+        if let Some(other) = self.other() {
+            return Err(TextError::Section { line: other.line, headings: self.line });
+        }
         let names = shortened(&names.join(", "));
+        let (last, ends) = (columns.iter().map(|column| column.index).max().unwrap_or(0), OnceCell::new());
+        // fields at the end alone: behind a mark that is lost within, words come where all other rows have numbers
+        let lacks_its_end = |row: &TextRow| {
+            let count = row.fields.len();
+            let ends = || ends.get_or_init(|| self.last_of_numbers(width)).iter();
+            let is_in_place = |end: &usize| (last..count).contains(end) && row.is_number(*end);
+            let is_cut = || count == last + 1 && self.text.ends_in(row);
+            count < width && !row.is_by_blanks() && ends().any(is_in_place) && !is_cut()
+        };
         let row = |mut row: TextRow<'_>| {
             row.drop_empty(width);
-            row.check_width(width, &names)?;
+            if !lacks_its_end(&row) {
+                row.check_width(width, &names)?;
+            }
             // a quote that nobody closed takes the next row into its field
             if let Some(column) = row.fields.iter().position(|field| field.contains('\n')) {
                 return Err(row.not_numeric(column));
@@ -155,6 +171,16 @@ impl TextTable {
             Ok(TableRow { line: row.line, values })
         };
         self.data().map(row).collect()
+    }
+
+    /// The columns that have numbers in all rows of `width` fields, and none in the next column.
+    fn last_of_numbers(&self, width: usize) -> Vec<usize> {
+        let (mut rows, mut numbers) = (0, vec![0; width]);
+        for row in self.data().filter(|row| row.fields.len() >= width) {
+            rows += 1;
+            numbers.iter_mut().enumerate().for_each(|(column, count)| *count += usize::from(row.is_number(column)));
+        }
+        (1..width).filter(|&next| rows > 0 && numbers[next - 1] == rows && numbers[next] == 0).map(|k| k - 1).collect()
     }
 
     /// The column that is `wanted`; `None` if no heading names it.
@@ -223,7 +249,7 @@ impl TextTable {
         let found = if self.headings.is_empty() {
             "none".into()
         } else {
-            shortened(&self.headings.join(", ")) + &self.looks_like()
+            shortened(&self.headings.join(", ")) + &self.looks_like(wanted.quantity)
         };
         let several = if several.is_empty() { String::new() } else { format!(": {several}") };
         TextError::Heading { line: self.line, column: wanted.name, words: wanted.words.join(", "), several, found }

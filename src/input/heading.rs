@@ -71,6 +71,15 @@ fn ends_in(text: &str, quantity: Quantity) -> bool {
     !is_condition && readings(last).iter().any(|unit| unit.0 == quantity)
 }
 
+/// Whether a heading has a value of `quantity` in brackets, at which its column was measured: of `E'(10.0Hz)/MPa`.
+pub(super) fn is_at(heading: &str, quantity: Quantity) -> bool {
+    let is_value = |text: &str| {
+        let unit = text.trim_start_matches(|c: char| c.is_ascii_digit() || ".,+-".contains(c));
+        unit.len() < text.len() && readings(unit).iter().any(|unit| unit.0 == quantity)
+    };
+    heading.split(['(', '[']).skip(1).filter_map(|text| text.split([')', ']']).next()).any(is_value)
+}
+
 /// A heading without parts of it.
 fn without<'a>(heading: &str, parts: impl Iterator<Item = &'a str>) -> String {
     parts.fold(heading.to_owned(), |rest, part| match rest.rfind(part) {

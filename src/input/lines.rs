@@ -112,9 +112,9 @@ impl Text {
         }
     }
 
-    /// The lines from `line` on, and their numbers.
-    pub(super) fn lines_from(&self, line: u64) -> impl Iterator<Item = (u64, &str)> {
-        (self.line..).zip(self.text.lines()).skip_while(move |(number, _)| *number < line)
+    /// Whether the text ends in a row, where it may be cut off.
+    pub(super) fn ends_in(&self, row: &TextRow) -> bool {
+        !self.text.ends_with('\n') && self.rows().last().is_some_and(|last| last.line == row.line)
     }
 
     /// The lines that are neither empty nor comments.
@@ -269,6 +269,11 @@ impl TextRow<'_> {
     /// Whether it has delimiters alone.
     pub(super) fn is_empty(&self) -> bool {
         self.fields.iter().all(|field| field.is_empty())
+    }
+
+    /// Whether blanks separate its fields, which say nothing of empty ones.
+    pub(super) fn is_by_blanks(&self) -> bool {
+        self.dialect.delimiter == Delimiter::Blanks
     }
 
     /// Drops empty fields beyond `width`, left by delimiters at the end of a line.

@@ -4,25 +4,25 @@ use std::fmt;
 use std::io::Read;
 use std::path::Path;
 
-use super::format::{Delimiter, TextFormat};
+use super::format::TextFormat;
+use super::heading::is_at;
 use super::lines::{Text, TextRow, shortened};
-use super::sections::{are_units, bare, gaps};
-use super::unit::readings;
+use super::sections::{ROWS_OF_NUMBERS, Section, are_numbers, are_units, headings, merged, sections, with_units};
+use super::unit::{Quantity, readings};
 use crate::error::{Result, TextError};
 
 /// Rows among which the first row of numbers is looked for, before eight times as many are read.
 const SEARCHED: usize = 1000;
-/// Rows in which the same two columns have numbers: a table has begun.
-const ROWS_OF_NUMBERS: usize = 3;
+
 /// A table in a text file, as it was understood: print it to see how.
 ///
 /// The table begins with the first rows that have numbers in the same two columns. The row above them has the
 /// headings, if none of its fields is a number; a row of units may stand between the two: short words, of which one at
 /// least is a unit that is known. All rows from there on belong to the table; where its headings and units are
-/// repeated, as in files of several steps or intervals, a section begins that is joined to it
-/// ([`TextTable::section`] takes one alone). Lines before the headings are not read. Without a row of headings, the
-/// last comment before the numbers may have them, one for each column, as NumPy writes them; or comments that begin
-/// with `columns:` and `units:`.
+/// repeated, as in files of several steps or intervals, a section begins that is joined to it. Where a section has
+/// others, one is to be chosen ([`TextTable::section`]). Lines before the headings are not read. Without a row of
+/// headings, the last comment before the numbers may have them, one for each column, as NumPy writes them; or comments
+/// that begin with `columns:` and `units:`.
 ///
 /// ```
 /// use viscocontact::rheology::{Experiment, Measurements, Units};
@@ -46,16 +46,13 @@ pub struct TextTable {
     pub(super) headings: Vec<String>,
     /// The line of the headings, or of the first row of numbers.
     pub(super) line: u64,
-    /// The lines of the first row of numbers, and after the last.
-    first: u64,
-    end: u64,
-    /// First and last lines between two sections.
-    gaps: Vec<[u64; 2]>,
+    /// In the order of the file; rows are read of those with the headings of the first.
+    sections: Vec<Section>,
     /// Whether the headings are a comment, which may say something else.
     commented: bool,
 }
 
-debug_by! { self: TextTable => headings: self.headings, line: self.line, first: self.first }
+debug_by! { self: TextTable => headings: self.headings, line: self.line, first: self.sections[0].first }
 
 impl TextTable {
     /// Reads a file.
@@ -97,13 +94,9 @@ impl TextTable {
             );
         }
         let first = from.first().map_or(u64::MAX, |row| row.line);
-        let gaps = match (names, from.first()) {
-            (Some(names), Some(first)) => gaps(&text, names, units, first)?,
-            _ => Vec::new(),
-        };
         let mut commented = false;
         let (headings, line) = match names {
-            Some(names) => (with_units(merged(names, width), units.map(|row| merged(row, width))), names.line),
+            Some(names) => (headings(names, units, from.first()), names.line),
             None => {
                 let (mut names, mut units) = (None, None);
                 for row in text.comments_before(first) {
@@ -123,7 +116,9 @@ impl TextTable {
                 (with_units(names, units), line)
             }
         };
-        Ok(TextTable { headings, line, first, end: u64::MAX, gaps, commented, text })
+        let all = Section { headings: headings.clone(), line, first, end: u64::MAX };
+        let sections = names.map_or_else(|| vec![all.clone()], |names| sections(&text, names, all.clone()));
+        Ok(TextTable { headings, line, sections, commented, text })
     }
 
     /// The headings, with units of a row of their own in brackets; none, if there is no row of headings.
@@ -133,7 +128,8 @@ impl TextTable {
 
     /// The same without headings that are a comment: it may say something else.
     pub(crate) fn without_comment(&self) -> Option<TextTable> {
-        self.commented.then(|| TextTable { headings: Vec::new(), line: self.first, commented: false, ..self.clone() })
+        let line = self.sections[0].first;
+        self.commented.then(|| TextTable { headings: Vec::new(), line, commented: false, ..self.clone() })
     }
 
     /// The same with another heading of a column, counted from 1: with a unit in brackets, `z [nm]`. An empty heading
@@ -175,39 +171,49 @@ impl TextTable {
         Ok(self)
     }
 
-    /// The same with one section alone, from 1: one step or interval of an instrument, of those with the same headings.
+    /// The same with one section alone, from 1 in the order of the file: one step or interval of an instrument.
+    /// Headings that were given stay, unless the section has others than the first.
     ///
     /// # Errors
     /// If there is no such section ([`TextError::NoSection`]).
     pub fn section(mut self, number: usize) -> Result<TextTable> {
-        let sections = self.gaps.len() + 1;
+        let sections = self.sections.len();
         if !(1..=sections).contains(&number) {
             return Err(TextError::NoSection { section: number, sections }.into());
         }
-        let (before, after) = (number.checked_sub(2).map(|k| self.gaps[k]), self.gaps.get(number - 1));
-        self.end = after.map_or(self.end, |gap| gap[0]);
-        self.first = before.map_or(self.first, |gap| gap[1] + 1);
-        self.gaps.clear();
-        Ok(self)
+        let own = self.sections[number - 1].clone();
+        if own.headings != self.sections[0].headings {
+            self.headings.clone_from(&own.headings);
+        }
+        Ok(TextTable { line: own.line, sections: vec![own], ..self })
+    }
+
+    /// The first section with other headings than the first of all.
+    pub(super) fn other(&self) -> Option<&Section> {
+        self.sections.iter().find(|section| section.headings != self.sections[0].headings)
     }
 
     /// The rows of the table.
     pub(super) fn data(&self) -> impl Iterator<Item = TextRow<'_>> {
-        let mut gaps = self.gaps.iter().peekable();
-        let is_row = move |row: &TextRow| {
-            while gaps.next_if(|gap| gap[1] < row.line).is_some() {}
-            let is_between = gaps.peek().is_some_and(|gap| gap[0] <= row.line);
-            (self.first..self.end).contains(&row.line) && !is_between && !row.is_empty()
-        };
-        self.text.rows().filter(is_row)
+        let is_own = |section: &&Section| section.headings == self.sections[0].headings;
+        let mut sections = self.sections.iter().filter(is_own).peekable();
+        self.text.rows().filter(move |row| {
+            while sections.next_if(|section| section.end <= row.line).is_some() {}
+            sections.peek().is_some_and(|section| section.first <= row.line) && !row.is_empty()
+        })
     }
 
-    /// What the headings look like, if this explains that a column was not found.
-    pub(super) fn looks_like(&self) -> String {
-        match self.headings.iter().filter(|heading| !readings(heading).is_empty()).count() {
-            0 => String::new(),
-            _ => format!("; line {} looks like units", self.line),
+    /// What the headings look like, if this explains that a column of a quantity was not found.
+    pub(super) fn looks_like(&self, quantity: Quantity) -> String {
+        let are_units = self.headings.iter().any(|heading| !readings(heading).is_empty());
+        let looks = if are_units { format!("; line {} looks like units", self.line) } else { String::new() };
+        let choose = |other: &Section| format!("; line {} has others: choose by TextTable::section", other.line);
+        let looks = looks + &self.other().map_or(String::new(), choose);
+        if self.headings.iter().any(|heading| is_at(heading, quantity)) {
+            return looks
+                + "; some have it in brackets: write it in a column of its own, and a row for each of its values";
         }
+        looks
     }
 }
 
@@ -227,11 +233,7 @@ fn beginning(text: &Text) -> (Vec<TextRow<'_>>, usize) {
 /// Index of the first row of numbers, if it is among these rows or they are all.
 fn first_of_numbers(rows: &[TextRow], are_all: bool) -> Option<usize> {
     let begins = |from: usize| {
-        let next = &rows[from..rows.len().min(from + ROWS_OF_NUMBERS)];
-        let is_column = |&column: &usize| next.iter().all(|row| row.is_number(column));
-        (are_all || next.len() == ROWS_OF_NUMBERS)
-            && (0..rows[from].fields.len()).filter(is_column).count() > 1
-            && !are_units(&rows[from])
+        (are_all || rows.len() >= from + ROWS_OF_NUMBERS) && are_numbers(&rows[from..]) && !are_units(&rows[from])
     };
     let numbers = |row: &TextRow| row.numbers() > 0 && !are_units(row);
     let found = (0..rows.len()).find(|&from| begins(from));
@@ -244,29 +246,6 @@ fn first_of_numbers(rows: &[TextRow], are_all: bool) -> Option<usize> {
     Some(start)
 }
 
-/// The fields of a row; units in brackets belong to the field before them, if blanks have torn them off.
-fn merged(row: &TextRow, width: usize) -> Vec<String> {
-    let mut merged: Vec<String> = Vec::new();
-    let torn = row.dialect.delimiter == Delimiter::Blanks && row.fields.len() > width;
-    for field in &row.fields {
-        match merged.last_mut().filter(|_| torn && field.starts_with(['[', '(', '{'])) {
-            Some(last) => *last += &format!(" {field}"),
-            None => merged.push(field.to_string()),
-        }
-    }
-    merged
-}
-
-fn with_units(mut names: Vec<String>, units: Option<Vec<String>>) -> Vec<String> {
-    for (name, unit) in names.iter_mut().zip(units.into_iter().flatten()) {
-        let unit = bare(&unit);
-        if !["", "-"].contains(&unit) {
-            *name += &format!(" [{unit}]");
-        }
-    }
-    names
-}
-
 impl fmt::Display for TextTable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (dialect, rows) = (self.text.dialect, self.data().count());
@@ -277,14 +256,14 @@ impl fmt::Display for TextTable {
             dialect.delimiter.marks().1,
             self.text.encoding
         )?;
-        if !self.gaps.is_empty() {
-            let again: Vec<String> = self.gaps.iter().map(|gap| gap[0].to_string()).collect();
-            write!(
-                f,
-                ", {} sections with the same headings joined (new ones from lines {})",
-                again.len() + 1,
-                again.join(", ")
-            )?;
+        if self.sections.len() > 1 {
+            let (count, lines) =
+                (self.sections.len(), self.sections[1..].iter().map(|section| section.line.to_string()));
+            let lines = lines.collect::<Vec<_>>().join(", ");
+            match self.other() {
+                None => write!(f, ", {count} sections with the same headings joined (new ones from lines {lines})")?,
+                Some(_) => write!(f, ", {count} sections with different headings, to be chosen from (lines {lines})")?,
+            }
         }
         if self.headings.is_empty() {
             return write!(f, ", without headings");
@@ -302,7 +281,7 @@ pub(super) fn numbered<'a>(headings: impl Iterator<Item = (usize, &'a String)>) 
 mod tests {
     use super::*;
     use crate::Error;
-    use crate::input::{Quantity, WantedColumn};
+    use crate::input::WantedColumn;
 
     const TIME: WantedColumn =
         WantedColumn { name: "time", words: &["t", "time"], others: &[], quantity: Quantity::TIME, by_unit: true };

@@ -2,7 +2,7 @@
 
 use viscocontact::input::{Quantity, TextTable, WantedColumn};
 use viscocontact::rheology::{Experiment, Isotherm, Measurements, TableError, Units};
-use viscocontact::{Error, Result, TextError, TextFormat};
+use viscocontact::{Delimiter, Error, Result, TextError, TextFormat};
 
 const ROWS: [[f64; 3]; 4] = [[1.0, 100.0, 10.0], [3.0, 120.0, 15.0], [10.0, 150.0, 20.0], [30.0, 180.0, 20.0]];
 
@@ -72,7 +72,9 @@ fn rows_of_units_are_read_with_unknown_ones() {
     assert_eq!(one.headings()[7], "Torque [mN·m]");
     assert_same(&rows(&table(&step("Sweep", 25.0, 1.0))).unwrap(), &scaled(1.0));
     // no row of units: what has a number, or letters for symbols
-    for text in ["t\tJ\tN\n1\t1\ts\n2\t2\ts\n3\t3\ts\n4\t4\ts\n", "made\tby\thand\nh\tF\tt\n1\t2\t3\n2\t3\t4\n3\t4\t5\n"] {
+    for text in
+        ["t\tJ\tN\n1\t1\ts\n2\t2\ts\n3\t3\ts\n4\t4\ts\n", "made\tby\thand\nh\tF\tt\n1\t2\t3\n2\t3\t4\n3\t4\t5\n"]
+    {
         let table = table(text);
         assert!(table.headings().iter().all(|heading| !heading.contains('[')), "{table}");
         assert_eq!(table.to_string().split(' ').next(), Some(if text.starts_with('t') { "4" } else { "3" }));
@@ -105,12 +107,10 @@ fn sections_with_the_same_headings_are_joined_and_told() {
 #[test]
 fn what_is_no_section_is_refused_where_it_is() {
     let (one, two) = (interval(1, 1.0), interval(2, 0.8));
-    let other = TextTable::read((one.clone() + &two.replace("[Pa]", "[kPa]")).as_bytes(), TextFormat::default());
-    assert_eq!(other.unwrap_err(), Error::Text(TextError::Section { line: 14, headings: 4 }));
-    let others = table(&(one.clone() + &two.replace("Shear Strain", "Shear Stress")));
-    assert!(rows(&others).unwrap_err().to_string().contains("another table"));
     // the last row before a section, with a fault, belongs to the table
-    for spoiled in ["\t4\t30\t180\t20\n", "\t4\t30\toops\t20\t0.1\t1\t0.63\tME-,taD\n", "\t4\t3O\t180\t2O\t0.1\t1\t0.63\t\n"] {
+    for spoiled in
+        ["\t4\t30\t180\t20\n", "\t4\t30\toops\t20\t0.1\t1\t0.63\tME-,taD\n", "\t4\t3O\t180\t2O\t0.1\t1\t0.63\t\n"]
+    {
         let start = one.rfind("\t4\t30").unwrap();
         let error = rows(&table(&format!("{}{spoiled}{two}", &one[..start]))).unwrap_err();
         let line = match error {
@@ -121,12 +121,91 @@ fn what_is_no_section_is_refused_where_it_is() {
     }
 }
 
+/// A label before the headings, to which no field of the rows belongs.
+#[test]
+fn labels_before_headings_are_no_columns() {
+    let labelled = interval(1, 1.0).replace("\n\t1\t", "\n1\t").replace("\n\t2\t", "\n2\t");
+    let labelled = labelled.replace("\n\t3\t", "\n3\t").replace("\n\t4\t", "\n4\t");
+    assert_same(&rows(&table(&labelled)).unwrap(), &scaled(1.0));
+    assert_eq!(table(&labelled).headings()[0], "Point No.");
+    // of one row alone, it is a mark that is lost
+    let error = rows(&table(&interval(1, 1.0).replace("\n\t1\t", "\n1\t"))).unwrap_err();
+    assert!(matches!(error, Error::Text(TextError::Columns { .. })), "{error}");
+}
+
+/// Steps with other columns or units are chosen from: the first has no moduli, or others.
+#[test]
+fn sections_with_other_headings_are_chosen_from() {
+    let (one, two) = (interval(1, 1.0), interval(2, 0.8));
+    for (other, factor) in [("Shear Strain", 1.0), ("[Pa]", 1e3)] {
+        let both = table(&(one.clone() + &two.replace(other, if factor > 1.0 { "[kPa]" } else { "Shear Stress" })));
+        assert_eq!(rows(&both).unwrap_err(), Error::Text(TextError::Section { line: 15, headings: 4 }));
+        assert!(both.to_string().contains("2 sections with different headings"), "{both}");
+        for (number, factor) in [(1, 1.0), (2, 0.8 * factor)] {
+            let own = both.clone().section(number).unwrap();
+            assert_same(&rows(&own).unwrap(), &scaled(factor));
+        }
+    }
+    let soak = "[Step]\nStep name\tSoak\nVariables\tTime\tTemperature\tStatus bits\nUnits\ts\t°C\t\n".to_owned()
+        + &[0, 10, 20, 30].map(|t| format!("Data point\t{t}\t25.0\t0xB6453\n")).concat();
+    let all = table(&(soak.clone() + &step("a", 25.0, 1.0) + &soak + &step("b", 40.0, 0.8)));
+    let error = Measurements::from_table(Experiment::Dynamic, &all, Units::OF_HEADINGS).unwrap_err();
+    assert!(error.to_string().contains("line 12 has others: choose by TextTable::section"), "{error}");
+    for (number, factor) in [(2, 1.0), (4, 0.8)] {
+        assert_same(&rows(&all.clone().section(number).unwrap()).unwrap(), &scaled(factor));
+    }
+    assert_eq!(all.clone().section(3).unwrap().headings()[1..3], ["Time [s]", "Temperature [°C]"]);
+    assert_eq!(all.section(5).unwrap_err(), Error::Text(TextError::NoSection { section: 5, sections: 4 }));
+}
+
+/// A remark that is not written leaves a row one field short: it is read where no other column can be the missing one.
+#[test]
+fn rows_may_lack_remarks_at_their_end() {
+    let whole = interval(1, 1.0);
+    for lacking in ["180\t20\t0.1111111111111111\t1\t0.63", "120\t15\t0.125\t1\t0.63"] {
+        let text = whole.replace(&format!("{lacking}\tME-,taD\n"), &format!("{lacking}\n"));
+        assert!(text.len() < whole.len());
+        assert_same(&rows(&table(&text)).unwrap(), &scaled(1.0));
+    }
+    let columns = |error: Error| matches!(error, Error::Text(TextError::Columns { .. }));
+    // a mark lost between two numbers, a number that is lacking, a file that is cut off
+    for (from, to) in [("\t3\t120", "\t3120"), ("120\t15\t0.125\t1\t0.63\tME-,taD", "120\t15\t0.125\t1")] {
+        let text = whole.replace(from, to);
+        assert!(text != whole && columns(rows(&table(&text)).unwrap_err()), "{to}");
+    }
+    let text = "omega [rad/s],G' [Pa],remark\n1,100,a\n3,120,b\n10,150,c\n30,180";
+    let cut = |text: &str| {
+        Measurements::from_csv_reader(Experiment::Storage, text.as_bytes(), Units::OF_HEADINGS, TextFormat::default())
+    };
+    let error = cut(text).unwrap_err();
+    assert!(error.to_string().contains("leave the line out by #"), "{error}");
+    assert!(columns(error) && cut(&format!("{text}\n")).is_ok());
+}
+
+/// A temperature ramp with a column for each frequency, which the headings have in brackets.
+#[test]
+fn frequencies_in_headings_are_told() {
+    let text = "#SAMPLE:;NBR\n##Temp./°C;Time/min;E'(1.000Hz)/MPa;E''(1.000Hz)/MPa;E'(10.000Hz)/MPa;E''(10.000Hz)/MPa\n\
+        -40,0;0,0;900,1;120,3;1100,0;100,3\n-30,0;5,0;500,1;180,3;700,0;200,3\n-20,0;10,0;100,1;80,3;200,0;150,3\n";
+    let read =
+        Isotherm::from_csv_reader(Experiment::Dynamic, text.as_bytes(), Units::OF_HEADINGS, TextFormat::default());
+    let error = read.unwrap_err().to_string();
+    assert!(error.contains("write it in a column of its own, and a row for each of its values"), "{error}");
+}
+
 #[test]
 fn preambles_may_be_long() {
     for lines in [3, 150, 990, 1500, 9000] {
-        let preamble: String = (0..lines).map(|k| format!("Calibration {k}\t{k}.5 mrad/N.m, or less\n")).collect();
+        let preamble: String = (0..lines).map(|k| format!("Calibration\t{k}.5 mrad/N.m, or less\n")).collect();
         assert_same(&rows(&table(&(preamble + &step("a", 25.0, 1.0)))).unwrap(), &scaled(1.0));
     }
+    // two numbers in each line, between blanks: the delimiter has to be stated
+    let preamble: String = (0..150).map(|k| format!("Calibration {k}\t{k}.5 mrad/N.m, or less\n")).collect();
+    let text = preamble + &step("a", 25.0, 1.0);
+    let read = |format| Measurements::from_csv_reader(Experiment::Dynamic, text.as_bytes(), Units::OF_HEADINGS, format);
+    assert!(read(TextFormat::default()).is_err());
+    let stated = TextTable::read(text.as_bytes(), TextFormat::default().with_delimiter(Delimiter::Tab)).unwrap();
+    assert_same(&rows(&stated).unwrap(), &scaled(1.0));
 }
 
 #[test]

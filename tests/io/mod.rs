@@ -6,6 +6,7 @@ mod clauses;
 mod diagnosis;
 mod documents;
 mod errors;
+mod exports;
 mod headings;
 mod house;
 mod interface;

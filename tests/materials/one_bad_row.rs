@@ -78,7 +78,7 @@ fn judge(is_creep: bool) {
         "{right} right, {warned} warned, {refused} refused, {silent} silent of {count}; J at least {worst:.2}, below 0.8 in {low}; {told} clean tables warned of"
     );
     assert!(25 * silent <= count && 30 * low <= count, "{silent} silent and {low} low of {count}");
-    assert!(10 * told <= count, "{told} clean tables of {count} have an outlier");
+    assert!(20 * told <= count, "{told} clean tables of {count} have an outlier");
 }
 
 #[test]

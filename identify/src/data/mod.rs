@@ -88,18 +88,14 @@ impl Recording {
     /// The same with the other sign of force and deflection: for instruments whose force is negative where it presses.
     #[must_use]
     pub fn flip_force(mut self) -> Recording {
-        for column in [&mut self.force, &mut self.deflection].into_iter().flatten() {
-            column.iter_mut().for_each(|value| *value = -*value);
-        }
+        [&mut self.force, &mut self.deflection].into_iter().flatten().flatten().for_each(|value| *value = -*value);
         self
     }
 
     /// The same with the other sign of drive and depth: for stages whose position falls toward the sample.
     #[must_use]
     pub fn flip_drive(mut self) -> Recording {
-        for column in [&mut self.drive, &mut self.depth].into_iter().flatten() {
-            column.iter_mut().for_each(|value| *value = -*value);
-        }
+        [&mut self.drive, &mut self.depth].into_iter().flatten().flatten().for_each(|value| *value = -*value);
         self
     }
 

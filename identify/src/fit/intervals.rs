@@ -47,7 +47,7 @@ impl Fit {
             match self.identification.minimum(&problem, problem.coordinates(&values)) {
                 Ok(minimum) => {
                     values = problem.values(&minimum.coordinates);
-                    minimum.sum() - self.sum
+                    minimum.sum() - self.found.minimum.sum()
                 }
                 Err(_) => NO_FIT * threshold,
             }

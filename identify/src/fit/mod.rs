@@ -25,7 +25,7 @@ use crate::identification::Identification;
 use crate::model::{Model, Scale};
 use crate::parameters::Parameter;
 use crate::part::Part;
-use crate::problem::Problem;
+use crate::problem::{Problem, Response};
 use crate::series::Prony;
 use crate::statistics::{correlation_test, means, student};
 use deviations::{inverse, limit, robust_deviation};
@@ -66,7 +66,7 @@ pub struct Fit {
     pub(crate) problem: Problem,
     /// Values of all parameters.
     pub(crate) values: Vec<f64>,
-    coordinates: Vec<f64>,
+    found: Found,
     prony: Prony,
     estimates: Vec<Estimate>,
     /// Covariance of the estimates, and of the coordinates.
@@ -74,24 +74,17 @@ pub struct Fit {
     of_coordinates: Mat<f64>,
     /// Ends of profiles, for bands, and whether the data bound them.
     ends: OnceLock<Vec<(Vec<f64>, bool)>>,
-    samples: Vec<Vec<Sample>>,
-    forces: Vec<Vec<f64>>,
-    /// Measured less modelled force, by curve.
-    residuals: Vec<Vec<f64>>,
+    responses: Vec<Response>,
     sigma: f64,
     /// Degrees of freedom of intervals.
     freedom: f64,
-    sum: f64,
-    iterations: usize,
-    /// A model that this one contains, and its sum of squares over the least one.
-    above: Option<(Model, f64)>,
     /// Share of the information that means of neighbours have lost.
     lost: f64,
 }
 
 impl Fit {
     pub(crate) fn new(identification: &Identification, problem: Problem, found: Found) -> Result<Fit> {
-        let Found { minimum, above } = found;
+        let minimum = &found.minimum;
         let (coordinates, residuals, sum) = (&minimum.coordinates, &minimum.residuals, minimum.sum());
         let slopes = problem.slopes(coordinates)?;
         let (jacobian, lost) = (&problem.matrix(&slopes), problem.lost(&slopes));
@@ -141,36 +134,25 @@ impl Fit {
             }
         };
         let estimates = free.iter().enumerate().zip(at).map(estimate).collect();
-        let (mut samples, mut forces, mut residuals) = (Vec::new(), Vec::new(), Vec::new());
         let whole = problem.whole();
-        for curve in 0..whole.parts.len() {
-            let (of_samples, force, rest) = whole.response(curve, &values, &prony)?;
-            samples.push(of_samples);
-            forces.push(force);
-            residuals.push(rest);
-        }
+        let response = |curve: usize| whole.response(curve, &values, &prony);
+        let responses = (0..whole.parts.len()).map(response).collect::<Result<_>>()?;
         let of_coordinates = inverse * faer::Scale(sigma * sigma);
         let curves = whole.parts.iter().map(|part| part.curve.clone()).collect();
-        let (identification, iterations) = (identification.clone(), minimum.steps);
         Ok(Fit {
-            identification,
+            identification: identification.clone(),
             curves,
             problem,
             values,
-            coordinates: minimum.coordinates,
+            found,
             prony,
             estimates,
             spread,
             of_coordinates,
             ends: OnceLock::new(),
-            samples,
-            forces,
-            residuals,
+            responses,
             sigma,
             freedom,
-            sum,
-            iterations,
-            above,
             lost,
         })
     }
@@ -224,17 +206,17 @@ impl Fit {
 
     /// Force and depth of the fit at each sample of a curve; empty if there is no such curve, as its forces and residuals are.
     pub fn samples(&self, curve: usize) -> &[Sample] {
-        self.samples.get(curve).map_or(&[], Vec::as_slice)
+        self.responses.get(curve).map_or(&[], |response| &response.samples)
     }
 
     /// Force of the fit at each sample of a curve, offset, drift, tilt and drag included \[N\].
     pub fn force(&self, curve: usize) -> &[f64] {
-        self.forces.get(curve).map_or(&[], Vec::as_slice)
+        self.responses.get(curve).map_or(&[], |response| &response.force)
     }
 
     /// Measured less fitted force at each sample of a curve \[N\].
     pub fn residuals(&self, curve: usize) -> &[f64] {
-        self.residuals.get(curve).map_or(&[], Vec::as_slice)
+        self.responses.get(curve).map_or(&[], |response| &response.residuals)
     }
 
     /// The curves.
@@ -276,7 +258,7 @@ impl Fit {
 
     /// Iterations of the search.
     pub fn iterations(&self) -> usize {
-        self.iterations
+        self.found.minimum.steps
     }
 
     /// Share of the information on a parameter that is lost where a curve of more than 2048 samples, in noise that is white or of unknown correlation, is
@@ -292,18 +274,18 @@ impl Fit {
 
     /// Samples with the tip in contact.
     pub fn points_in_contact(&self) -> usize {
-        self.samples.iter().flatten().filter(|sample| sample.contact_depth > 0.0).count()
+        self.responses.iter().flat_map(|of| &of.samples).filter(|sample| sample.contact_depth > 0.0).count()
     }
 
     /// Probability of correlations of the residuals as great, if the model is right (Ljung & Box 1978): a small one means that the model is wrong, of
     /// the material or of the noise.
     pub fn probability(&self) -> f64 {
-        let white = |(residuals, part): (&Vec<f64>, &Part)| {
-            let mut white = means(residuals, part.len());
+        let white = |(of, part): (&Response, &Part)| {
+            let mut white = means(&of.residuals, part.len());
             part.whiten(&mut white);
             white
         };
-        let white: Vec<_> = self.residuals.iter().zip(&self.problem.parts).map(white).collect();
+        let white: Vec<_> = self.responses.iter().zip(&self.problem.parts).map(white).collect();
         correlation_test(&white, if self.identification.fits_correlation() { self.curves.len() } else { 0 })
     }
 
@@ -317,9 +299,10 @@ impl Fit {
         if points <= count + 1.0 {
             return f64::INFINITY;
         }
+        let sum = self.found.minimum.sum();
         let misfit = match known {
-            Some(sigma) => self.sum / (sigma * sigma) + 2.0 * points * sigma.ln(),
-            None => points * ((self.sum / points).ln() + 1.0),
+            Some(sigma) => sum / (sigma * sigma) + 2.0 * points * sigma.ln(),
+            None => points * ((sum / points).ln() + 1.0),
         };
         let log_weight: f64 = self.problem.parts.iter().map(Part::log_weight).sum();
         misfit - log_weight + 2.0 * count + 2.0 * count * (count + 1.0) / (points - count - 1.0)

@@ -117,7 +117,7 @@ impl Fit {
             let [over_noise, over_force] = self.misfit();
             warnings.push(FitWarning::Misfit { over_noise, over_force });
         }
-        if let Some((model, ratio)) = self.above.filter(|(_, ratio)| *ratio < 1.0 - SAME_SUM) {
+        if let Some((model, ratio)) = self.found.above.filter(|(_, ratio)| *ratio < 1.0 - SAME_SUM) {
             warnings.push(FitWarning::AboveContained { model, ratio });
         }
         for (curve, of) in self.curves.iter().enumerate() {

@@ -30,6 +30,7 @@ const LITTLE_MOVED: f64 = 0.3;
 const AGREED: f64 = 1e-7;
 
 /// What a search found.
+#[derive(Clone, Debug)]
 pub(crate) struct Found {
     pub(super) minimum: LeastSquares,
     /// A model that this one contains, and its sum of squares over the least one.
@@ -125,11 +126,11 @@ impl Identification {
         let prony = problem.prony(&values)?;
         let (mut differences, mut has_errors) = (Vec::new(), false);
         for (curve, part) in problem.parts.iter().enumerate() {
-            let (samples, force, residuals) = whole.response(curve, &values, &prony)?;
-            has_errors |= is_error(&samples, &residuals);
-            let coarse = problem.force(curve, &values, &prony)?;
-            differences
-                .push(means(&force, part.len()).iter().zip(coarse).map(|(fine, coarse)| fine - coarse).collect());
+            let [fine, coarse] = [whole, problem].map(|of| of.response(curve, &values, &prony));
+            let (fine, coarse) = (fine?, coarse?.force);
+            has_errors |= is_error(&fine.samples, &fine.residuals);
+            let fine = means(&fine.force, part.len());
+            differences.push(fine.iter().zip(coarse).map(|(fine, coarse)| fine - coarse).collect());
         }
         let (differences, jacobian) = (problem.white(differences), problem.matrix(&slopes));
         let inverse = inverse_gram(&jacobian, 1e-13)?;

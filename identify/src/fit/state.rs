@@ -29,7 +29,7 @@ use crate::problem::{LONG, Problem};
 /// # Ok::<(), viscocontact_identify::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
+#[expect(clippy::exhaustive_structs, reason = "readers write it out")]
 pub struct FitState {
     /// The free parameters on their scales.
     pub coordinates: Vec<f64>,
@@ -45,17 +45,6 @@ pub struct FitState {
 }
 
 impl FitState {
-    /// Of these fields, in their order.
-    pub fn new(
-        coordinates: Vec<f64>,
-        noise: Vec<(f64, [f64; 2], Vec<f64>)>,
-        means: bool,
-        iterations: usize,
-        above: Option<f64>,
-    ) -> FitState {
-        FitState { coordinates, noise, means, iterations, above }
-    }
-
     /// The fit of these numbers to the curves that they are of.
     ///
     /// # Errors
@@ -83,11 +72,11 @@ impl Fit {
     pub fn state(&self) -> FitState {
         let noise = |part: &Part| (part.scale, [part.whitening.phi, part.whitening.memory], part.outliers.clone());
         FitState {
-            coordinates: self.coordinates.clone(),
+            coordinates: self.found.minimum.coordinates.clone(),
             noise: self.problem.parts.iter().map(noise).collect(),
             means: self.problem.whole.is_some(),
-            iterations: self.iterations,
-            above: self.above.map(|(_, ratio)| ratio),
+            iterations: self.iterations(),
+            above: self.found.above.map(|(_, ratio)| ratio),
         }
     }
 }

@@ -22,6 +22,8 @@ pub use report::{FitReport, FitSample, FitWarning};
 pub(in crate::rheology) use report::{KNOWN, MOST_MISFIT};
 
 pub(in crate::rheology) use polish::polish;
+#[cfg(feature = "data")]
+pub(in crate::rheology) use polish::{damped_step, linearise};
 
 /// The class of series to search.
 #[derive(Debug, Clone)]

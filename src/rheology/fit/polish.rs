@@ -49,7 +49,7 @@ pub(in crate::rheology) fn polish(
 }
 
 /// Derivatives of the misfits by ln constant, ln slope, and each (ln strength, ln time), and the misfits.
-fn linearise(series: &FittedSeries, samples: &[Sample], search: &Search) -> (Matrix, Vec<f64>) {
+pub(in crate::rheology) fn linearise(series: &FittedSeries, samples: &[Sample], search: &Search) -> (Matrix, Vec<f64>) {
     let [constant_moves, slope_moves] = moving_ends(series, search);
     let ends = usize::from(constant_moves) + usize::from(slope_moves);
     let mut jacobian = Matrix::zeros(samples.len(), ends + 2 * series.terms.len());
@@ -85,7 +85,7 @@ fn moving_ends(series: &FittedSeries, search: &Search) -> [bool; 2] {
 }
 
 /// min |J δ + r|² + damping |δ|².
-fn damped_step(jacobian: &Matrix, misfits: &[f64], damping: f64) -> Vec<f64> {
+pub(in crate::rheology) fn damped_step(jacobian: &Matrix, misfits: &[f64], damping: f64) -> Vec<f64> {
     let (m, n) = (jacobian.rows(), jacobian.columns());
     let scale = damping.sqrt() * (jacobian.norm() / (n as f64).sqrt()).max(1e-300);
     let matrix = Matrix::from_fn(m + n, n, |i, j| match i {

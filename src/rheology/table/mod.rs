@@ -261,7 +261,7 @@ impl Measurements {
         let [report, nearest] =
             [&measured.series, &measured.least_squares].map(|series| FitReport::new(series, samples));
         let nearest = if nearest.rms_misfit() < report.rms_misfit() { nearest } else { report.clone() };
-        let report = report.of_measurements(wrong_way, measured.ambiguity, uncertainty, &nearest, of_others.or(knock));
+        let report = report.of_measurements(wrong_way, measured.ambiguity, uncertainty, &nearest, knock.or(of_others));
         let report = FitReport { averaged: self.averaged, ..report };
         let most = self.scatter.map_or(MOST_MISFIT, |scatter| scatter.max(MOST_MISFIT));
         let rms = nearest.rms_misfit();

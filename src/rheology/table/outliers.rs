@@ -4,7 +4,7 @@
 //! that has a large modulus at t = 0, which nothing else bounds and which slows the creep.
 
 use super::data::{DEVIATIONS, MOST_NOISE};
-use crate::rheology::fit::{FittedSeries, Sample, Search};
+use crate::rheology::fit::{FittedSeries, Sample, Search, damped_step, linearise};
 use crate::rheology::table::measured::FLOOR;
 
 /// Uncertainties and systematic misfits below this need no warning.
@@ -15,7 +15,7 @@ const LEAST: f64 = 1e-2;
 /// A fit of all samples leaves less of an outlier inside than a fit of the others, but at least this many deviations.
 const SUSPECT: f64 = 2.0;
 /// An end that deviates by more than this share of what makes it an outlier follows the curve of the others poorly.
-const DOUBTFUL: f64 = 0.6;
+const DOUBTFUL: f64 = 0.4;
 /// What a fit misses of an end without scatter, over what it misses of the sample next to it, varies by less.
 const CONTINUED: f64 = 2.0;
 /// Of so many rows, one may be an outlier: more are a property of the table, and fewer do not tell their scatter.
@@ -43,7 +43,7 @@ impl Search {
             let worst = (0..kept.len()).max_by(|&a, &b| left(a).total_cmp(&left(b)));
             let worst = worst.filter(|&k| left(k) > SUSPECT * noise && !is_end(k));
             let tried = (0..kept.len()).filter(|&k| is_end(k)).chain(worst);
-            let excess = |k: usize| (k, self.excess(&kept, k, is_end(k), scatter));
+            let excess = |k: usize| (k, self.excess(&kept, k, is_end(k), scatter, leverage(&whole, &kept, self, k)));
             let found = tried.map(excess).max_by(|a, b| a.1.0.total_cmp(&b.1.0));
             // ends of relaxation have warnings of their own
             let is_doubtful = |excess: f64, deviation: f64| self.slope && excess > DOUBTFUL && deviation.abs() > LEAST;
@@ -65,14 +65,13 @@ impl Search {
 
     /// How far a sample deviates from the fit of the others, over what their scatter explains; and relatively. An end
     /// must deviate as far from a parabola through its neighbours, and further than the sample next to it deviates
-    /// from the fit of the rest: few curves can be continued.
-    fn excess(&self, samples: &[Sample], k: usize, is_end: bool, scatter: Option<f64>) -> (f64, f64) {
+    /// from the fit of the rest: few curves can be continued. `leverage` is the share of the sample in its own fit.
+    fn excess(&self, samples: &[Sample], k: usize, is_end: bool, scatter: Option<f64>, leverage: f64) -> (f64, f64) {
         let (fit, others, deviation) = self.left_out(samples, k);
-        let parameters = fit.parameters() as f64;
         let noise = scatter.unwrap_or(0.0).max(fit.noise(&others));
-        // the curve itself is uncertain, and few samples tell their scatter poorly: of Student's t, whose square
-        // exceeds six deviations' as rarely, by a factor of about 1 + 12/n
-        let spread = (1.0 + 2.0 * parameters / others.len() as f64) * (1.0 + 12.0 / fit.freedoms(&others));
+        // the curve of the others is uncertain, mostly at the ends, and few samples tell their scatter poorly: of
+        // Student's t, whose square exceeds six deviations' as rarely, by a factor of about 1 + 12/n
+        let spread = (1.0 + 12.0 / fit.freedoms(&others)) / (1.0 - leverage).max(f64::MIN_POSITIVE);
         let mut explained = (DEVIATIONS * noise * (spread / samples[k].weight).sqrt()).max(LEAST);
         let mut found = deviation.abs();
         if is_end && found > explained {
@@ -99,6 +98,16 @@ impl Search {
         let deviation = 1.0 / (1.0 + fit.misfit(&sample)) - 1.0;
         (fit, others, deviation)
     }
+}
+
+/// The share of a sample in its own fitted value, at a minimum: by the strengths, of given times.
+fn leverage(series: &FittedSeries, samples: &[Sample], search: &Search, k: usize) -> f64 {
+    let (all, _) = linearise(series, samples, search);
+    let ends = all.columns() - 2 * series.terms.len();
+    let strengths: Vec<usize> = (0..ends).chain((ends..all.columns()).step_by(2)).collect();
+    let (jacobian, mut unit) = (all.of_columns(&strengths), vec![0.0; samples.len()]);
+    unit[k] = -1.0;
+    damped_step(&jacobian, &unit, 1e-12).iter().enumerate().map(|(j, step)| jacobian[(k, j)] * step).sum()
 }
 
 /// The relative deviation of an end from the parabola through its neighbours, on logarithmic axes: of coarse tables, no

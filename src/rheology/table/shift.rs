@@ -207,7 +207,9 @@ impl Pair<'_> {
     }
 
     fn cost(&self, shift: f64, columns: &[usize], scatter: &[f64]) -> f64 {
-        let (mut sum, factor) = (0.0, self.factor(shift, columns));
+        let factor = self.factor(shift, columns);
+        // values of neighbours differ by little: a factor of two costs what makes another shift as good
+        let mut sum = AS_GOOD * (factor / std::f64::consts::LN_2).powi(2);
         self.differences(shift, columns, |found| {
             let z = (found.value - factor) / scatter[found.column];
             sum += (z * z / found.variance).ln_1p() - self.usual[found.column];
@@ -242,7 +244,8 @@ impl Pair<'_> {
             if information > 0.0 { (INFLATION * (1.0 + FEW / count) / information).sqrt() } else { high - low };
         let least = self.cost(shift, columns, scatter);
         let tried = (0..=TRIED).map(|k| low + (high - low) * k as f64 / TRIED as f64);
-        let near = tried.filter(|other| (other - shift).abs() < 0.1 * (high - low));
+        // with a factor, curves that are nearly powers of time superpose at any shift
+        let near = tried.filter(|other| self.is_vertical || (other - shift).abs() < 0.1 * (high - low));
         let as_good = near.filter(|&other| self.cost(other, columns, scatter) < least + AS_GOOD);
         as_good.map(|other| (other - shift).abs()).fold(by_slopes, f64::max)
     }

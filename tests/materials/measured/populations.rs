@@ -80,10 +80,20 @@ fn a_pair_where_isotherms_meet_is_fitted_and_an_outlier_is_not() {
     assert!(outlier.with_scatter(0.1).unwrap().fit().is_ok());
 }
 
-/// Shifts of random isotherms, with noise, outliers and loss moduli spoiled at one end, within 0.05 decades or three of their
-/// stated errors.
 #[test]
 fn isotherms_are_shifted_within_their_errors() {
+    shifts_within_their_errors(false);
+}
+
+/// The same where the values of each isotherm have a factor, which takes the place of a shift where slopes are alike: found, or told by the error.
+#[test]
+fn isotherms_are_shifted_within_their_errors_with_factors() {
+    shifts_within_their_errors(true);
+}
+
+/// Shifts of random isotherms, with noise, outliers and loss moduli spoiled at one end, within 0.05 decades or three of their
+/// stated errors.
+fn shifts_within_their_errors(is_vertical: bool) {
     let (count, mut shifts, mut off, mut errors) =
         (from_environment("ISOTHERM_SETS", 12), 0, Vec::new(), Ratios::default());
     for seed in 0..count {
@@ -100,12 +110,14 @@ fn isotherms_are_shifted_within_their_errors() {
         number = factors.len();
         let body = broad(&mut draw, factors[number - 1].sqrt());
         let spectrum = body.creep_spectrum().unwrap().relaxation();
+        let verticals: Vec<f64> =
+            (0..number).map(|_| if is_vertical { draw.between(0.8, 1.25) } else { 1.0 }).collect();
         let mut noise = noise(seed + 7);
         let rows = (decades * per_decade) as usize + 1;
         let isotherm = |k: usize, draw: &mut Draws, noise: &mut dyn FnMut() -> f64| {
             let mut noisy = |value: f64, draw: &mut Draws| {
                 let outlier = if outliers && draw.chance(0.03) { [0.25, -0.25][draw.below(2)] } else { 0.0 };
-                value * (deviation * noise() + outlier).exp()
+                verticals[k] * value * (deviation * noise() + outlier).exp()
             };
             let x: Vec<f64> = (0..rows).map(|i| 10f64.powf(decades * (i as f64 / (rows - 1) as f64 - 0.5))).collect();
             let table = if dynamic {
@@ -128,7 +140,8 @@ fn isotherms_are_shifted_within_their_errors() {
         };
         let isotherms: Vec<Isotherm> = (0..number).map(|k| isotherm(k, &mut draw, &mut noise)).collect();
         let reference = draw.below(number);
-        let master = MasterCurve::new(300.0 + 5.0 * reference as f64, isotherms)
+        let shifted = if is_vertical { MasterCurve::with_vertical_shifts } else { MasterCurve::new };
+        let master = shifted(300.0 + 5.0 * reference as f64, isotherms)
             .unwrap_or_else(|error| panic!("seed {seed}, noise {deviation:.3}: {error}"));
         for (k, ((_, found), (_, error))) in master.shift_factors().into_iter().zip(master.shift_errors()).enumerate() {
             let apart = (found / (factors[k] / factors[reference])).log10().abs();
