@@ -23,8 +23,11 @@ mod problem;
 mod region;
 mod report;
 mod run;
+#[cfg(feature = "checkpoint")]
+mod saved;
 mod secant;
 mod sliding_limit;
+mod state;
 
 pub use contact::FrictionContact;
 pub use history::ShearHistory;

@@ -111,6 +111,7 @@ pub(super) fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
 
 /// What a cell does in a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(super) enum Cell {
     #[default]
     Apart,
@@ -119,7 +120,8 @@ pub(super) enum Cell {
 }
 
 /// Tractions of a step, and what they leave.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Default)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Solution {
     /// τ, both components one after the other \[Pa\].
     pub(super) traction: Vec<f64>,
@@ -129,6 +131,8 @@ pub(super) struct Solution {
     /// g \[m\].
     pub(super) gradient: Vec<f64>,
 }
+
+clone_by_fields! { Solution { traction, cells, motion, gradient } }
 
 impl Solution {
     pub(super) fn resize(&mut self, n: usize) {
