@@ -34,5 +34,6 @@ pub use history::ShearHistory;
 pub use limit::{Coulomb, FrictionLimit, Lesser, Tresca};
 pub use load::{Component, ShearLoad};
 pub use report::{FrictionReport, Outcome};
+pub use state::FrictionSnapshot;
 
 pub use crate::error::FrictionError;

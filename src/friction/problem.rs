@@ -73,6 +73,16 @@ impl Problem<'_> {
         self.touching().map(|i| dot(self.mode(k, i), [field[i], field[n + i]])).sum()
     }
 
+    /// What is missing of each load.
+    pub(super) fn gaps(&self, field: &[f64]) -> [f64; 3] {
+        [0, 1, 2].map(|k| self.wanted[k].map_or(0.0, |wanted| wanted - self.carried(k, field)))
+    }
+
+    /// The largest of them, over its scale.
+    pub(super) fn balance(&self, gaps: [f64; 3]) -> f64 {
+        self.driven().map(|k| gaps[k].abs() / self.size(k)).fold(0.0, f64::max)
+    }
+
     /// g from c K τ.
     pub(super) fn gradient(&self, stress: &[f64], motion: [f64; 3], out: &mut [f64]) {
         let n = self.cells();

@@ -8,9 +8,9 @@ use crate::contact::StepReport;
 use crate::error::Result;
 use crate::load::{Load, LoadHistory};
 use crate::run::Contact;
-use crate::run::passage::{Passage, Span};
 #[cfg(feature = "checkpoint")]
 use crate::run::doubled::SavedRun;
+use crate::run::passage::{Passage, Span};
 use crate::run::trace::{bends, looks};
 
 /// First step after a jump or a corner, over the time to the next one.

@@ -7,9 +7,9 @@ use crate::contact::StepReport;
 use crate::error::Result;
 use crate::load::{Load, LoadHistory};
 use crate::run::Contact;
-use crate::run::doubled::judge::{Judge, Record, SMALL, Tries, WITHOUT_ORDER};
 #[cfg(feature = "checkpoint")]
 use crate::run::doubled::SavedRun;
+use crate::run::doubled::judge::{Judge, Record, SMALL, Tries, WITHOUT_ORDER};
 use crate::run::passage::{Passage, Span};
 
 /// Part of the tolerance that the steps of a run share by their length, and each step beside that by its length over
