@@ -234,7 +234,7 @@ impl FrictionContact {
         history.commit(free, &[]);
         std::mem::swap(solution, trial);
         let convolution_equivalents = kernel.equivalents(self.normal.grid().cells());
-        Ok(Outcome::Holds(Box::new(FrictionReport { normal, iterations, convolution_equivalents, residual })))
+        Ok(Outcome::Holds(FrictionReport { normal, iterations, convolution_equivalents, residual }))
     }
 
     /// Lets the rectangle cover the contact.

@@ -25,16 +25,22 @@ pub(super) struct Work {
     /// Whether other cells slip than at the start of that step.
     changed: bool,
     secant: Option<Secant>,
+    /// Of the search by motion: the drift, and where it comes from.
+    pub(super) drift: Vec<f64>,
+    pub(super) kept: Solution,
+    pub(super) beside: Solution,
 }
 
 impl Work {
     pub(super) fn resize(&mut self, n: usize) {
-        let Work { stress, normals, curvature, step, residual, preconditioned, direction, image, modes, .. } = self;
+        let Work { stress, normals, curvature, step, residual, preconditioned, direction, image, modes, drift, .. } =
+            self;
         modes.resize(n);
+        [&mut self.kept, &mut self.beside].into_iter().for_each(|solution| solution.resize(n));
         normals.resize(n, [0.0; 2]);
         self.began.resize(n, false);
         curvature.resize(n, 0.0);
-        let fields = [stress, step, residual, preconditioned, direction, image];
+        let fields = [stress, step, residual, preconditioned, direction, image, drift];
         fields.into_iter().for_each(|field| field.resize(2 * n, 0.0));
     }
 }
@@ -142,29 +148,30 @@ impl Solution {
                 break;
             }
             work.began.fill(false);
-            self.move_by(problem, work, |i, work| [work.step[i], work.step[problem.cells() + i]]);
+            self.move_by(problem, work);
             (0..3).for_each(|k| self.motion[k] += work.change[k]);
             self.carry(problem, work, 0.003 * tolerance);
         }
         outcome
     }
 
-    /// Changes the tractions: what leaves its circle slips.
-    fn move_by(&mut self, problem: &Problem<'_>, work: &mut Work, by: impl Fn(usize, &Work) -> [f64; 2]) {
-        let n = problem.cells();
+    /// Changes the tractions by the step found last: what leaves its circle slips. Returns whether other cells began to.
+    fn move_by(&mut self, problem: &Problem<'_>, work: &mut Work) -> bool {
+        let (n, step, mut any) = (problem.cells(), &work.step, false);
         for i in problem.touching() {
-            let [dx, dy] = by(i, work);
-            let [x, y] = [self.traction[i] + dx, self.traction[n + i] + dy];
+            let [x, y] = [self.traction[i] + step[i], self.traction[n + i] + step[n + i]];
             let (bound, size) = (problem.bound[i], x.hypot(y));
             let begins = size > bound && self.cells[i] == Cell::Stick;
             work.began[i] |= begins;
-            work.changed |= begins;
+            any |= begins;
             if size > bound {
                 self.cells[i] = Cell::Slip;
             }
             let scale = if self.cells[i] == Cell::Slip && size > 0.0 { bound / size } else { 1.0 };
             (self.traction[i], self.traction[n + i]) = (scale * x, scale * y);
         }
+        work.changed |= any;
+        any
     }
 
     /// Lets the tractions carry the loads again, as those under a rigid body that moves: what projections took away is
@@ -200,7 +207,10 @@ impl Solution {
                 let by = [0, 1].map(|axis| (0..3).map(|k| parts[k] * answers[k][axis]).sum::<f64>());
                 (work.step[i], work.step[problem.cells() + i]) = (by[0], by[1]);
             }
-            self.move_by(problem, work, |i, work| [work.step[i], work.step[problem.cells() + i]]);
+            // near the limit all cells would slip before the others had a say
+            if self.move_by(problem, work) {
+                break;
+            }
         }
     }
 
