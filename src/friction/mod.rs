@@ -27,6 +27,7 @@ mod run;
 mod saved;
 mod secant;
 mod sliding_limit;
+mod snapshot;
 mod state;
 
 pub use contact::FrictionContact;
@@ -34,6 +35,6 @@ pub use history::ShearHistory;
 pub use limit::{Coulomb, FrictionLimit, Lesser, Tresca};
 pub use load::{Component, ShearLoad};
 pub use report::{FrictionReport, Outcome};
-pub use state::FrictionSnapshot;
+pub use snapshot::FrictionSnapshot;
 
 pub use crate::error::FrictionError;

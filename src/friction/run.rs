@@ -34,8 +34,8 @@ impl FrictionContact {
     /// along the surface of a body that does not turn.
     ///
     /// Adaptive steps keep the error of motions and forces along the surface, relative to their maximum so far, within
-    /// the tolerance besides that of approach and force, and solve to 1e-4 of it. More than friction carries ends the run with
-    /// [`FrictionError::Slides`]; [`FrictionContact::load_share`] tells before.
+    /// the tolerance besides that of approach and force, and solve to 1e-4 of it. More than friction carries ends the
+    /// run with [`FrictionError::Slides`]; [`FrictionContact::load_share`] tells before.
     ///
     /// ```
     /// use viscocontact::friction::{Coulomb, FrictionContact, ShearHistory};

@@ -1,8 +1,5 @@
-//! What steps change, and copies of it to come back to.
+//! What steps change besides the normal contact.
 
-use crate::contact::Snapshot;
-use crate::error::Result;
-use crate::friction::contact::FrictionContact;
 use crate::friction::problem::{Cell, Solution};
 use crate::friction::region::Rectangle;
 use crate::hereditary::{ExponentialRule, GroupHistory};
@@ -68,34 +65,5 @@ impl State {
             && [traction.len(), gradient.len(), 2 * cells.len()] == [2 * n; 3]
             && history.fits(&own.history, 2 * n)
             && numbers.into_iter().flatten().chain([&self.load_share]).all(|value| value.is_finite())
-    }
-}
-
-/// The state of a contact with friction in memory, made by [`FrictionContact::snapshot`].
-#[derive(Debug, Clone)]
-pub struct FrictionSnapshot {
-    normal: Snapshot,
-    state: State,
-}
-
-impl FrictionContact {
-    /// The state as it is, to come back to.
-    pub fn snapshot(&self) -> FrictionSnapshot {
-        FrictionSnapshot { normal: self.normal.snapshot(), state: self.state.clone() }
-    }
-
-    /// Goes back to a state: the steps that follow are the same as they were, bitwise.
-    ///
-    /// # Errors
-    /// If the snapshot was made of another contact; a contact and its clones may exchange theirs.
-    pub fn restore(&mut self, snapshot: &FrictionSnapshot) -> Result<()> {
-        self.normal.restore(&snapshot.normal)?;
-        let region = self.state.region;
-        self.state.clone_from(&snapshot.state);
-        self.saved_run = None;
-        if region != self.state.region {
-            self.fit_to_region();
-        }
-        Ok(())
     }
 }
