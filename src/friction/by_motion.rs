@@ -23,7 +23,6 @@ struct Search<'a> {
     problem: &'a Problem<'a>,
     kernel: &'a mut TangentialKernel,
     work: &'a mut Work,
-    drift: Vec<f64>,
     /// The residual of tractions under a prescribed motion.
     tolerance: f64,
     outcome: Outcome,
@@ -33,14 +32,21 @@ impl Search<'_> {
     /// What is missing of each load under this motion, over what friction can carry, if the tractions are found.
     fn missing(&mut self, solution: &mut Solution, motion: [f64; 3]) -> Option<[f64; 3]> {
         let problem = self.problem;
-        self.drift.copy_from_slice(problem.drift);
-        take_motion(&mut self.drift, problem.touching(), problem.entered, problem.places, motion);
-        let held = Problem { drift: &self.drift, wanted: [None; 3], ..*problem };
+        let mut drift = std::mem::take(&mut self.work.drift);
+        drift.copy_from_slice(problem.drift);
+        take_motion(&mut drift, problem.touching(), problem.entered, problem.places, motion);
+        let missing = self.missing_of(solution, &Problem { drift: &drift, wanted: [None; 3], ..*problem });
+        self.work.drift = drift;
+        missing
+    }
+
+    fn missing_of(&mut self, solution: &mut Solution, held: &Problem<'_>) -> Option<[f64; 3]> {
+        let problem = self.problem;
         for is_cold in [false, true] {
             if is_cold {
-                solution.begin_cold(&held);
+                solution.begin_cold(held);
             }
-            let found = solution.solve(&held, self.kernel, self.tolerance, self.work);
+            let found = solution.solve(held, self.kernel, self.tolerance, self.work);
             self.outcome.iterations += found.iterations;
             self.outcome.residual = found.residual;
             if found.is_solved {
@@ -54,16 +60,20 @@ impl Search<'_> {
 
     /// The Newton step, in units of motion: by differences.
     fn step(&mut self, start: &Solution, motion: [f64; 3], lacking: [f64; 3], units: [f64; 3]) -> Option<[f64; 3]> {
-        let (mut slopes, mut solution) = ([[0.0; 3]; 3], start.clone());
+        let (mut slopes, mut solution) = ([[0.0; 3]; 3], std::mem::take(&mut self.work.beside));
+        let mut found = true;
         for k in self.problem.driven() {
             let by = CHANGE * (motion[k].abs() + units[k]);
             let mut beside = motion;
             beside[k] += by;
-            let there = self.missing(&mut solution, beside)?;
-            (0..3).for_each(|row| slopes[row][k] = (lacking[row] - there[row]) / by * units[k]);
             solution.clone_from(start);
+            let there = self.missing(&mut solution, beside);
+            found &= there.is_some();
+            let there = there.unwrap_or(lacking);
+            (0..3).for_each(|row| slopes[row][k] = (lacking[row] - there[row]) / by * units[k]);
         }
-        Some(linalg::solve(slopes, lacking, 0.0).0)
+        self.work.beside = solution;
+        found.then(|| linalg::solve(slopes, lacking, 0.0).0)
     }
 }
 
@@ -80,8 +90,7 @@ impl Solution {
         work: &mut Work,
     ) -> Outcome {
         let tight = (1e-3 * tolerance).max(MOST_ACCURATE.min(tolerance));
-        let (drift, outcome) = (problem.drift.to_vec(), Outcome::default());
-        let mut search = Search { problem, kernel, work, drift, tolerance: tight, outcome };
+        let mut search = Search { problem, kernel, work, tolerance: tight, outcome: Outcome::default() };
         // a displacement that friction could cause, and the angle that moves the mean cell by as much
         let largest = problem.touching().map(|i| problem.bound[i]).fold(0.0, f64::max);
         let natural = problem.compliance * problem.side * largest;
@@ -95,8 +104,8 @@ impl Solution {
                 self.motion = motion;
                 return Outcome { is_solved: true, ..search.outcome };
             }
-            let start = self.clone();
-            let Some(step) = search.step(&start, motion, lacking, units) else { return search.outcome };
+            search.work.kept.clone_from(self);
+            let Some(step) = search.step(self, motion, lacking, units) else { return search.outcome };
             let mut share = 1.0;
             loop {
                 let next = [0, 1, 2].map(|k| motion[k] + share * step[k] * units[k]);
@@ -109,7 +118,7 @@ impl Solution {
                 if share < LEAST_SHARE {
                     return search.outcome;
                 }
-                self.clone_from(&start);
+                self.clone_from(&search.work.kept);
             }
         }
         search.outcome

@@ -3,25 +3,25 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use crate::contact::{Builder, Snapshot, StepError, StepReport, TimeRule, ViscoelasticContact};
-use crate::error::{Error, FrictionError, Result, Special, UserError};
+use crate::contact::{Builder, Snapshot, Step, StepError, StepReport, TimeRule, ViscoelasticContact};
+use crate::equilibrium::constraints::validate_loads;
+use crate::error::{Error, FrictionError, Result, Special, UserError, non_negative};
 use crate::friction::history::ShearHistory;
 use crate::friction::kernel::{TangentialKernel, TangentialResponse};
 use crate::friction::limit::FrictionLimit;
 use crate::friction::load::{Component, LARGEST, ShearLoad};
 use crate::friction::newton::{NEGLIGIBLE, Work};
 use crate::friction::problem::{Cell, Problem, Solution, take_motion};
-use crate::friction::region::{Rectangle, extent};
+use crate::friction::region::extent;
 use crate::friction::report::{FrictionReport, Outcome};
-use crate::hereditary::{GroupHistory, Interpolant};
+use crate::friction::state::State;
+use crate::hereditary::{Interpolant, StepContext};
 use crate::load::Load;
-use crate::solver::RigidMotion;
+use crate::run::doubled::SavedRun;
+use crate::run::doubled::plain::Plain;
 
 /// Loads beyond what friction carries by less than this part are carried: rounding.
 const ROUNDING: f64 = 1e-9;
-
-/// The most accurate solver of a run.
-const MOST_ACCURATE: f64 = 1e-11;
 
 /// A contact that is pressed and sheared.
 ///
@@ -47,28 +47,21 @@ const MOST_ACCURATE: f64 = 1e-11;
 /// ```
 #[derive(Debug, Clone)]
 pub struct FrictionContact {
-    normal: ViscoelasticContact,
+    pub(super) normal: ViscoelasticContact,
     /// The normal contact before the step being tried.
     start: Snapshot,
-    limit: Arc<dyn FrictionLimit>,
-    response: TangentialResponse,
+    pub(super) limit: Arc<dyn FrictionLimit>,
+    pub(super) response: TangentialResponse,
+    pub(super) state: State,
     kernel: TangentialKernel,
-    region: Rectangle,
-    /// The past of U, of which K U is the displacement along the surface; both components one after the other.
-    history: GroupHistory,
-    /// Of the last step.
-    solution: Solution,
     step: StepFields,
-    motion: [f64; 3],
-    force: [f64; 3],
-    work: [f64; 2],
-    /// The part of what friction carries that the prescribed forces take.
-    load_share: f64,
-    /// Maximum of the motion and of the force so far.
-    pub(super) largest: [f64; 2],
-    /// Differences between outcomes of a step, over that maximum, that a run does not resolve.
+    /// Tolerance of the solver in a run.
+    pub(super) tolerance: f64,
+    /// Differences between outcomes of a step, over the maximum so far, that a run does not resolve.
     pub(super) unresolved: f64,
     pub(super) history_along: Option<ShearHistory>,
+    /// A run that was saved and resumed.
+    pub(super) saved_run: Option<Arc<SavedRun<Plain>>>,
 }
 
 /// What a step needs, on the rectangle but for the gap.
@@ -106,22 +99,17 @@ impl FrictionContact {
         let response = TangentialResponse::new(&normal.scene.ground.kernel, poisson)?;
         Ok(FrictionContact {
             start: normal.snapshot(),
-            history: GroupHistory::new(normal.computation.state.history.rule().clone(), 0),
+            state: State::new(normal.computation.state.history.rule()),
             // of no use before bodies touch
             kernel: TangentialKernel::new(&response, [1; 2]),
-            region: Rectangle { start: [0; 2], cells: [0; 2] },
             step: StepFields { gap: vec![0.0; normal.grid().len()], ..StepFields::default() },
+            tolerance: normal.settings().tolerance,
             normal,
             limit: Arc::new(limit),
             response,
-            solution: Solution::default(),
-            motion: [0.0; 3],
-            force: [0.0; 3],
-            work: [0.0; 2],
-            load_share: 0.0,
-            largest: [0.0; 2],
             unresolved: 0.0,
             history_along: None,
+            saved_run: None,
         })
     }
 
@@ -141,53 +129,48 @@ impl FrictionContact {
     /// # Errors
     /// As [`FrictionContact::step`], and [`Error::Cancelled`].
     pub fn step_unless(&mut self, cancelled: &AtomicBool, dt: f64, load: Load, shear: ShearLoad) -> Result<Outcome> {
+        self.advance(cancelled, dt, load, shear, self.normal.settings().tolerance)
+    }
+
+    /// Takes a step that is solved to a tolerance.
+    pub(super) fn advance(
+        &mut self,
+        cancelled: &AtomicBool,
+        dt: f64,
+        load: Load,
+        shear: ShearLoad,
+        tolerance: f64,
+    ) -> Result<Outcome> {
         shear.validate()?;
-        self.normal.snapshot_into(&mut self.start);
-        self.normal.fields().gap_into(&mut self.step.gap)?;
-        let (approach, reduced) = (self.placed(), self.normal.reduced_time());
-        let is_first = self.normal.contact_cells() == 0;
-        let normal = self.normal.step_unless(cancelled, dt, load)?;
-        let change = self.placed() - approach;
-        let met = |k: [f64; 2]| change.at(k);
-        let outcome = self.shear_to(
-            cancelled,
-            if dt == 0.0 { 0.0 } else { self.normal.reduced_time() - reduced },
-            shear,
-            normal,
-            is_first,
-            &met,
-        );
+        non_negative("time step", dt)?;
+        let normal = &mut self.normal;
+        normal.snapshot_into(&mut self.start);
+        normal.fields().gap_into(&mut self.step.gap)?;
+        let loads = [load];
+        let step = Step { cancelled: Some(cancelled), ..normal.request(normal.time() + dt, dt, &loads, tolerance)? };
+        validate_loads(&normal.scene.ground, step.request())?;
+        let length = step.interval.dt;
+        let (report, _) = normal.take_expecting(step, &StepContext::default())?;
+        let outcome = self.shear_to(cancelled, length, shear, report, tolerance);
         if !matches!(outcome, Ok(Outcome::Holds(_))) {
             self.normal.restore(&self.start)?;
         }
         outcome
     }
 
-    /// Where the body is.
-    fn placed(&self) -> RigidMotion {
-        self.normal.computation.state.held.current.motions[0]
-    }
-
-    /// Solves further steps to this tolerance, if it is less than that of the settings.
-    pub(super) fn solve_to(&mut self, tolerance: f64) {
-        let settings = &mut Arc::make_mut(&mut self.normal.scene).ground.settings;
-        settings.tolerance = settings.tolerance.min(tolerance.max(MOST_ACCURATE));
-    }
-
-    /// Takes the step along the surface, after that of the normal contact; `closed` tells by how much the body came
-    /// nearer at a place.
+    /// Takes the step along the surface, after that of the normal contact.
     fn shear_to(
         &mut self,
         cancelled: &AtomicBool,
         dt: f64,
         shear: ShearLoad,
         normal: StepReport,
-        is_first: bool,
-        closed: &dyn Fn([f64; 2]) -> f64,
+        tolerance: f64,
     ) -> Result<Outcome> {
         self.cover_contact();
-        self.bind(is_first, closed)?;
-        let FrictionContact { kernel, history, solution, step, motion, region, .. } = self;
+        self.bind()?;
+        let FrictionContact { kernel, state, step, .. } = self;
+        let State { history, solution, motion, region, .. } = state;
         let StepFields { places, bound, entered, drift, free, trial, work, .. } = step;
         let (time, cells) = (normal.time, region.len());
         let area = self.normal.grid().cell_area();
@@ -218,7 +201,6 @@ impl FrictionContact {
         if factor < 1.0 - ROUNDING {
             return Ok(Outcome::Slides { direction, over_limit: 1.0 / factor });
         }
-        let tolerance = self.normal.settings().tolerance;
         trial.traction.copy_from_slice(&solution.traction);
         trial.cells.copy_from_slice(&solution.cells);
         let found = trial.find(&problem, kernel, tolerance, work);
@@ -231,77 +213,81 @@ impl FrictionContact {
         }
         let mut change = given;
         problem.driven().for_each(|k| change[k] = trial.motion[k]);
-        let before = self.force;
+        let before = state.force;
         for k in 0..3 {
             motion[k] = if let Component::Motion(to) = shear.components[k] { to } else { motion[k] + change[k] };
-            self.force[k] = area * problem.carried(k, &trial.traction);
-            self.work[0] += 0.5 * (before[k] + self.force[k]) * change[k];
+            state.force[k] = area * problem.carried(k, &trial.traction);
+            state.work[0] += 0.5 * (before[k] + state.force[k]) * change[k];
         }
-        self.load_share = 1.0 / factor;
+        state.load_share = 1.0 / factor;
         // what friction could cause
         let (carried, count) = (problem.reach(0), problem.touching().count().max(1) as f64);
         let could = [compliance * side * carried / count.sqrt(), area * carried];
         let arm = self.normal.fields().contact_area().sqrt();
-        let now = [size(*motion, arm), size(self.force, arm.recip())];
+        let now = [size(*motion, arm), size(state.force, arm.recip())];
         for k in 0..2 {
-            self.largest[k] = self.largest[k].max(now[k]).max(NEGLIGIBLE * could[k]);
+            state.largest[k] = state.largest[k].max(now[k]).max(NEGLIGIBLE * could[k]);
         }
         let mean = trial.traction.iter().zip(&solution.traction).zip(&trial.gradient);
-        self.work[1] -= area * mean.map(|((now, before), g)| 0.5 * (now + before) * g).sum::<f64>();
+        state.work[1] -= area * mean.map(|((now, before), g)| 0.5 * (now + before) * g).sum::<f64>();
         free.iter_mut().zip(&trial.traction).for_each(|(u, traction)| *u += compliance * traction);
         history.commit(free, &[]);
         std::mem::swap(solution, trial);
         let convolution_equivalents = kernel.equivalents(self.normal.grid().cells());
-        Ok(Outcome::Holds(Box::new(FrictionReport { normal, iterations, convolution_equivalents, residual })))
+        Ok(Outcome::Holds(FrictionReport { normal, iterations, convolution_equivalents, residual }))
     }
 
     /// Lets the rectangle cover the contact.
     fn cover_contact(&mut self) {
-        let grid = self.normal.grid().clone();
+        let grid = self.normal.grid();
         let Some(touching) = extent(self.normal.pressure(), grid.cells()[1]) else { return };
-        let grown = self.region.grown_to(touching, &grid, self.response.periodic());
-        if grown == self.region {
-            return;
+        let grown = self.state.region.grown_to(touching, grid, self.response.periodic());
+        if grown != self.state.region {
+            self.state.grow_to(grown);
+            self.fit_to_region();
         }
-        let (old, n) = (self.region, grown.len());
-        let places: Vec<Option<usize>> = old.places_of(&grown).collect();
-        let moved = |k: usize| places[k % n].map(|place| place + k / n * old.len());
-        self.history.rearrange(2 * n, moved);
-        let traction = (0..2 * n).map(|k| moved(k).map_or(0.0, |k| self.solution.traction[k])).collect();
-        let gradient = (0..2 * n).map(|k| moved(k).map_or(0.0, |k| self.solution.gradient[k])).collect();
-        let cells = places.iter().map(|place| place.map_or(Cell::Apart, |k| self.solution.cells[k])).collect();
-        (self.solution.traction, self.solution.gradient, self.solution.cells) = (traction, gradient, cells);
-        self.region = grown;
-        self.kernel = TangentialKernel::new(&self.response, grown.cells);
-        let StepFields { places, bound, entered, drift, free, trial, work, .. } = &mut self.step;
-        *places =
-            grown.on_grid(grid.cells()[1]).map(|k| grid.center(k / grid.cells()[1], k % grid.cells()[1])).collect();
+    }
+
+    /// Makes what belongs to the rectangle.
+    pub(super) fn fit_to_region(&mut self) {
+        let (grid, region) = (self.normal.grid(), self.state.region);
+        let ([_, columns], n) = (grid.cells(), region.len());
+        let StepFields { gap, places, bound, entered, drift, free, trial, work } = &mut self.step;
+        if n > 0 {
+            self.kernel = TangentialKernel::new(&self.response, region.cells);
+        }
+        *places = region.on_grid(columns).map(|k| grid.center(k / columns, k % columns)).collect();
         [bound, entered].into_iter().for_each(|field| field.resize(n, 0.0));
         [drift, free].into_iter().for_each(|field| field.resize(2 * n, 0.0));
         trial.resize(n);
         work.resize(n);
+        gap.resize(grid.len(), 0.0);
     }
 
     /// Finds the bounds, and the share of the step for which each cell is in contact.
-    fn bind(&mut self, is_first: bool, closed: &dyn Fn([f64; 2]) -> f64) -> Result<()> {
+    fn bind(&mut self) -> Result<()> {
         let StepFields { gap, places, bound, entered, .. } = &mut self.step;
-        let (columns, pressure) = (self.normal.grid().cells()[1], self.normal.pressure());
+        let ([_, columns], pressure, region) = (self.normal.grid().cells(), self.normal.pressure(), self.state.region);
+        let [before, now] = [&self.start.state, &self.normal.computation.state].map(|state| &state.held.current);
+        // by how much the body came nearer at a place
+        let change = now.motions[0] - before.motions[0];
+        let closed = |k: usize| change.at(places[k]).max(f64::MIN_POSITIVE);
         // bodies that were apart touch first where their gap less what closes it is least
-        let touched = if is_first {
-            let reach = |k: usize| closed(places[k]).max(f64::MIN_POSITIVE);
-            let left = self.region.on_grid(columns).enumerate().map(|(k, at)| gap[at] / reach(k));
+        let was_apart = before.solution.pressure.iter().all(|p| *p == 0.0);
+        let touched = if was_apart {
+            let left = region.on_grid(columns).enumerate().map(|(k, at)| gap[at] / closed(k));
             left.fold(f64::INFINITY, f64::min).clamp(0.0, 1.0)
         } else {
             0.0
         };
-        for (k, at) in self.region.on_grid(columns).enumerate() {
+        for (k, at) in region.on_grid(columns).enumerate() {
             let p = pressure[at];
             bound[k] = if p > 0.0 { self.limit.limit(p) } else { 0.0 };
             if !(0.0..=LARGEST).contains(&bound[k]) {
                 return Err(not_a_limit(bound[k]));
             }
-            let waited = (gap[at].max(0.0) / closed(places[k]).max(f64::MIN_POSITIVE) - touched) / (1.0 - touched);
-            let is_met = p > 0.0 && self.solution.cells[k] == Cell::Apart;
+            let waited = (gap[at].max(0.0) / closed(k) - touched) / (1.0 - touched);
+            let is_met = p > 0.0 && self.state.solution.cells[k] == Cell::Apart;
             entered[k] = if is_met { 1.0 - waited.clamp(0.0, 1.0) } else { 1.0 };
         }
         Ok(())
@@ -314,53 +300,53 @@ impl FrictionContact {
 
     /// How far the body has moved along x1 and x2 \[m\] and turned \[rad\].
     pub fn motion(&self) -> [f64; 3] {
-        self.motion
+        self.state.motion
     }
 
     /// Forces along x1 and x2 \[N\] and torque \[N m\] that act on it.
     pub fn force(&self) -> [f64; 3] {
-        self.force
+        self.state.force
     }
 
     /// The work done along the surface, and the part of it that slip has dissipated \[J\].
     pub fn work(&self) -> [f64; 2] {
-        self.work
+        self.state.work
     }
 
     /// The part of what friction can carry that the forces prescribed in the last step take: the body slides beyond 1.
     /// 0 where motions are prescribed alone.
     pub fn load_share(&self) -> f64 {
-        self.load_share
+        self.state.load_share
     }
 
     /// Number of cells that stick.
     pub fn stick_cells(&self) -> usize {
-        self.solution.cells.iter().filter(|cell| **cell == Cell::Stick).count()
+        self.state.solution.cells.iter().filter(|cell| **cell == Cell::Stick).count()
     }
 
     /// Tractions along x1 and x2 \[Pa\], one value for each cell of the grid.
     pub fn traction(&self) -> [Vec<f64>; 2] {
-        self.whole(&self.solution.traction, 1.0)
+        self.whole(&self.state.solution.traction, 1.0)
     }
 
     /// Slip of the body over the surface in the last step along x1 and x2 \[m\]; 0 where bodies are apart.
     pub fn slip(&self) -> [Vec<f64>; 2] {
-        self.whole(&self.solution.gradient, -1.0)
+        self.whole(&self.state.solution.gradient, -1.0)
     }
 
     /// Which cells stick.
     pub fn sticks(&self) -> Vec<bool> {
         let mut sticks = vec![false; self.normal.grid().len()];
-        let cells = self.region.on_grid(self.normal.grid().cells()[1]).zip(&self.solution.cells);
+        let cells = self.state.region.on_grid(self.normal.grid().cells()[1]).zip(&self.state.solution.cells);
         cells.for_each(|(at, cell)| sticks[at] = *cell == Cell::Stick);
         sticks
     }
 
     fn whole(&self, field: &[f64], factor: f64) -> [Vec<f64>; 2] {
-        let n = self.region.len();
+        let n = self.state.region.len();
         [0, n].map(|start| {
             let mut whole = vec![0.0; self.normal.grid().len()];
-            let cells = self.region.on_grid(self.normal.grid().cells()[1]).zip(&field[start..]);
+            let cells = self.state.region.on_grid(self.normal.grid().cells()[1]).zip(&field[start..]);
             cells.for_each(|(at, value)| whole[at] = factor * value);
             whole
         })

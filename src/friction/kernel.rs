@@ -31,7 +31,7 @@ const FAR: f64 = 8.0;
 pub(super) struct TangentialResponse {
     grid: Grid,
     body: HalfSpace,
-    poisson: f64,
+    pub(super) poisson: f64,
     normal: InfluenceKernel,
     rule: GaussLegendre,
 }

@@ -23,13 +23,18 @@ mod problem;
 mod region;
 mod report;
 mod run;
+#[cfg(feature = "checkpoint")]
+mod saved;
 mod secant;
 mod sliding_limit;
+mod snapshot;
+mod state;
 
 pub use contact::FrictionContact;
 pub use history::ShearHistory;
 pub use limit::{Coulomb, FrictionLimit, Lesser, Tresca};
 pub use load::{Component, ShearLoad};
 pub use report::{FrictionReport, Outcome};
+pub use snapshot::FrictionSnapshot;
 
 pub use crate::error::FrictionError;

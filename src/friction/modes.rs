@@ -7,8 +7,9 @@ use crate::linalg;
 #[derive(Debug, Clone, Default)]
 pub(super) struct Modes {
     fields: [Vec<f64>; 3],
-    /// What the preconditioner makes of them.
+    /// What the preconditioner made of them in the last step that it was asked in, if it was.
     answers: [Vec<f64>; 3],
+    pub(super) are_known: bool,
     is_driven: [bool; 3],
     gram: [[f64; 3]; 3],
 }
@@ -57,9 +58,16 @@ impl Modes {
         for k in (0..3).filter(|&k| self.is_driven[k]) {
             precondition(&self.fields[k], &mut self.answers[k]);
         }
+        self.are_known = true;
         let carried = self.products(|a, b| inner(&self.fields[a], &self.answers[b]));
         let parts = linalg::solve_normal_equations(&carried, gaps, 1e-13);
         self.driven().for_each(|k| add(field, parts[k], &self.answers[k]));
+    }
+
+    /// What each carries at a cell.
+    pub(super) fn answers_at(&self, i: usize) -> [[f64; 2]; 3] {
+        let n = self.answers[0].len() / 2;
+        [0, 1, 2].map(|k| if self.is_driven[k] { [self.answers[k][i], self.answers[k][n + i]] } else { [0.0; 2] })
     }
 
     /// How much of a motion the loads feel where cells take part in it for a share of the step: (BᵀB)⁻¹ Bᵀ a B, by

@@ -4,6 +4,7 @@ use crate::friction::kernel::TangentialKernel;
 use crate::friction::modes::{Modes, add, inner};
 use crate::friction::problem::{Cell, Problem, Solution, dot};
 use crate::friction::secant::Secant;
+use crate::linalg;
 
 /// Buffers of the solver.
 #[derive(Debug, Clone, Default)]
@@ -24,16 +25,22 @@ pub(super) struct Work {
     /// Whether other cells slip than at the start of that step.
     changed: bool,
     secant: Option<Secant>,
+    /// Of the search by motion: the drift, and where it comes from.
+    pub(super) drift: Vec<f64>,
+    pub(super) kept: Solution,
+    pub(super) beside: Solution,
 }
 
 impl Work {
     pub(super) fn resize(&mut self, n: usize) {
-        let Work { stress, normals, curvature, step, residual, preconditioned, direction, image, modes, .. } = self;
+        let Work { stress, normals, curvature, step, residual, preconditioned, direction, image, modes, drift, .. } =
+            self;
         modes.resize(n);
+        [&mut self.kept, &mut self.beside].into_iter().for_each(|solution| solution.resize(n));
         normals.resize(n, [0.0; 2]);
         self.began.resize(n, false);
         curvature.resize(n, 0.0);
-        let fields = [stress, step, residual, preconditioned, direction, image];
+        let fields = [stress, step, residual, preconditioned, direction, image, drift];
         fields.into_iter().for_each(|field| field.resize(2 * n, 0.0));
     }
 }
@@ -47,6 +54,8 @@ pub(super) struct Outcome {
     pub(super) is_solved: bool,
 }
 
+/// Corrections of the loads after a Newton step.
+const MOST_CARRIES: usize = 8;
 /// Newton steps before a solve is given up.
 const MOST_STEPS: usize = 40;
 /// From so many Newton steps on every fourth is a step of each cell alone.
@@ -108,7 +117,7 @@ impl Solution {
         let mut outcome = Outcome::default();
         (work.secant, work.changed) = (None, false);
         work.began.fill(false);
-        let sizes = [0, 1, 2].map(|k| problem.size(k));
+        work.modes.are_known = false;
         for iteration in 0..=MOST_STEPS {
             kernel.apply(&self.traction, &mut work.stress);
             if iteration == 0 {
@@ -117,9 +126,8 @@ impl Solution {
             problem.gradient(&work.stress, self.motion, &mut self.gradient);
             let stress = problem.touching().map(|i| work.stress[i].abs().max(work.stress[n + i].abs()));
             let scale = (problem.compliance * stress.fold(0.0, f64::max)).max(drift).max(least).max(f64::MIN_POSITIVE);
-            let gaps =
-                [0, 1, 2].map(|k| problem.wanted[k].map_or(0.0, |wanted| wanted - problem.carried(k, &self.traction)));
-            let balance = problem.driven().map(|k| gaps[k].abs() / sizes[k]).fold(0.0, f64::max);
+            let gaps = problem.gaps(&self.traction);
+            let balance = problem.balance(gaps);
             let residual = self.judge(problem, work) / scale;
             outcome =
                 Outcome { iterations: iteration, residual, is_solved: residual <= tolerance && balance <= tolerance };
@@ -134,31 +142,76 @@ impl Solution {
             self.let_stick(problem, work, BACKWARDS * tolerance * scale);
             // what is beyond reach while the sets change, or would be beyond what is asked, is left
             let forcing =
-                if work.changed { 2.0 * FORCING } else { FORCING.min(residual.max(0.3 * tolerance / residual)) };
+                if work.changed { 2.0 * FORCING } else { FORCING.min(residual.max(0.7 * tolerance / residual)) };
             let gaps = if balance <= 0.003 * tolerance { [0.0; 3] } else { gaps };
             if !self.advance(problem, kernel, (gaps, forcing), work) {
                 break;
             }
+            work.began.fill(false);
             self.move_by(problem, work);
+            (0..3).for_each(|k| self.motion[k] += work.change[k]);
+            self.carry(problem, work, 0.003 * tolerance);
         }
         outcome
     }
 
-    /// Takes the Newton step found last: what leaves its circle slips.
-    fn move_by(&mut self, problem: &Problem<'_>, work: &mut Work) {
-        let (n, step) = (problem.cells(), &work.step);
+    /// Changes the tractions by the step found last: what leaves its circle slips. Returns whether other cells began to.
+    fn move_by(&mut self, problem: &Problem<'_>, work: &mut Work) -> bool {
+        let (n, step, mut any) = (problem.cells(), &work.step, false);
         for i in problem.touching() {
             let [x, y] = [self.traction[i] + step[i], self.traction[n + i] + step[n + i]];
             let (bound, size) = (problem.bound[i], x.hypot(y));
-            work.began[i] = size > bound && self.cells[i] == Cell::Stick;
-            work.changed |= work.began[i];
+            let begins = size > bound && self.cells[i] == Cell::Stick;
+            work.began[i] |= begins;
+            any |= begins;
             if size > bound {
                 self.cells[i] = Cell::Slip;
             }
             let scale = if self.cells[i] == Cell::Slip && size > 0.0 { bound / size } else { 1.0 };
             (self.traction[i], self.traction[n + i]) = (scale * x, scale * y);
         }
-        (0..3).for_each(|k| self.motion[k] += work.change[k]);
+        work.changed |= any;
+        any
+    }
+
+    /// Lets the tractions carry the loads again, as those under a rigid body that moves: what projections took away is
+    /// given back without a convolution.
+    fn carry(&mut self, problem: &Problem<'_>, work: &mut Work, least: f64) {
+        if !work.modes.are_known {
+            return;
+        }
+        for _ in 0..MOST_CARRIES {
+            let gaps = problem.gaps(&self.traction);
+            if problem.balance(gaps) <= least {
+                break;
+            }
+            let free = |i: usize, modes: &Modes| {
+                let (answers, traction) = (modes.answers_at(i), self.of(i));
+                if self.cells[i] == Cell::Stick {
+                    return answers;
+                }
+                let size = traction[0].hypot(traction[1]);
+                let tangent = [-traction[1] / size, traction[0] / size];
+                answers.map(|answer| tangent.map(|part| part * dot(tangent, answer)))
+            };
+            let mut carried = [[0.0; 3]; 3];
+            for i in problem.touching() {
+                let answers = free(i, &work.modes);
+                for a in problem.driven() {
+                    problem.driven().for_each(|b| carried[a][b] += dot(problem.mode(a, i), answers[b]));
+                }
+            }
+            let parts = linalg::solve_normal_equations(&carried, gaps, 1e-13);
+            for i in problem.touching() {
+                let answers = free(i, &work.modes);
+                let by = [0, 1].map(|axis| (0..3).map(|k| parts[k] * answers[k][axis]).sum::<f64>());
+                (work.step[i], work.step[problem.cells() + i]) = (by[0], by[1]);
+            }
+            // near the limit all cells would slip before the others had a say
+            if self.move_by(problem, work) {
+                break;
+            }
+        }
     }
 
     /// Finds normals and curvatures, and the largest residual: |g| where cells stick, its tangential part and what

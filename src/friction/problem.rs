@@ -73,6 +73,16 @@ impl Problem<'_> {
         self.touching().map(|i| dot(self.mode(k, i), [field[i], field[n + i]])).sum()
     }
 
+    /// What is missing of each load.
+    pub(super) fn gaps(&self, field: &[f64]) -> [f64; 3] {
+        [0, 1, 2].map(|k| self.wanted[k].map_or(0.0, |wanted| wanted - self.carried(k, field)))
+    }
+
+    /// The largest of them, over its scale.
+    pub(super) fn balance(&self, gaps: [f64; 3]) -> f64 {
+        self.driven().map(|k| gaps[k].abs() / self.size(k)).fold(0.0, f64::max)
+    }
+
     /// g from c K τ.
     pub(super) fn gradient(&self, stress: &[f64], motion: [f64; 3], out: &mut [f64]) {
         let n = self.cells();
@@ -111,6 +121,7 @@ pub(super) fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
 
 /// What a cell does in a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(super) enum Cell {
     #[default]
     Apart,
@@ -119,7 +130,8 @@ pub(super) enum Cell {
 }
 
 /// Tractions of a step, and what they leave.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Default)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Solution {
     /// τ, both components one after the other \[Pa\].
     pub(super) traction: Vec<f64>,
@@ -129,6 +141,8 @@ pub(super) struct Solution {
     /// g \[m\].
     pub(super) gradient: Vec<f64>,
 }
+
+clone_by_fields! { Solution { traction, cells, motion, gradient } }
 
 impl Solution {
     pub(super) fn resize(&mut self, n: usize) {

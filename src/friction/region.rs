@@ -6,7 +6,8 @@ use crate::Grid;
 use crate::kernel::fast_length;
 
 /// A rectangle of cells of a grid: the first along each axis, and their number.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Rectangle {
     pub(super) start: [usize; 2],
     pub(super) cells: [usize; 2],

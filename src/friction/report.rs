@@ -6,9 +6,10 @@ use crate::contact::StepReport;
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 #[must_use = "a contact that slides has not taken the step"]
+#[allow(clippy::large_enum_variant)] // a step allocates nothing
 pub enum Outcome {
     /// Friction carries the load.
-    Holds(Box<FrictionReport>),
+    Holds(FrictionReport),
     /// Friction cannot carry the forces along the surface: the body slides, and the contact is as it was before the
     /// step. Prescribe its motion in place of the force to see it slide.
     Slides {

@@ -1,6 +1,9 @@
 //! Runs of contacts with friction.
 
+#[cfg(feature = "checkpoint")]
+use std::path::Path;
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 use crate::contact::StepReport;
 use crate::error::{Error, FrictionError, Result};
@@ -12,6 +15,8 @@ use crate::friction::report::Outcome;
 use crate::load::{Load, LoadHistory};
 use crate::rheology::TemperatureHistory;
 use crate::run::control::Control;
+#[cfg(feature = "checkpoint")]
+use crate::run::doubled::{SavedRun, plain::Plain};
 use crate::run::progress::Progress;
 use crate::run::{Contact, Stepping, doubled};
 
@@ -20,6 +25,8 @@ const SOLVER_SHARE: f64 = 1e-4;
 /// Cells are met one by one, and how far each has slipped by then does not converge with the step: differences below
 /// this part of the tolerance are not resolved.
 const UNRESOLVED: f64 = 2e-3;
+/// The most accurate solver of a run.
+const MOST_ACCURATE: f64 = 1e-11;
 
 impl FrictionContact {
     /// With what acts along the surface in steps of a [`Run`](crate::run::Run), which ends its steps at the corners and
@@ -27,8 +34,8 @@ impl FrictionContact {
     /// along the surface of a body that does not turn.
     ///
     /// Adaptive steps keep the error of motions and forces along the surface, relative to their maximum so far, within
-    /// the tolerance besides that of approach and force, and solve to 1e-4 of it, as do steps after the run. More than friction carries ends the run with
-    /// [`FrictionError::Slides`]; [`FrictionContact::load_share`] tells before.
+    /// the tolerance besides that of approach and force, and solve to 1e-4 of it. More than friction carries ends the
+    /// run with [`FrictionError::Slides`]; [`FrictionContact::load_share`] tells before.
     ///
     /// ```
     /// use viscocontact::friction::{Coulomb, FrictionContact, ShearHistory};
@@ -64,7 +71,7 @@ impl Contact for FrictionContact {
             Some(history) if dt > 0.0 => history.load(|history| history.checked_before(time, true))?,
             Some(history) => history.load(|history| history.checked_at(time, true))?,
         };
-        match FrictionContact::step(self, dt, load, shear)? {
+        match self.advance(&AtomicBool::new(false), dt, load, shear, self.tolerance)? {
             Outcome::Holds(report) => Ok(report.normal),
             Outcome::Slides { direction, over_limit } => {
                 Err(FrictionError::Slides { time, direction, over_limit }.into())
@@ -107,7 +114,7 @@ impl Contact for FrictionContact {
         let arm = self.contact_area().sqrt();
         let motion = size(off(self.motion(), other.motion()), arm);
         let force = size(off(FrictionContact::force(self), FrictionContact::force(other)), arm.recip());
-        let parts = [motion, force].into_iter().zip(self.largest);
+        let parts = [motion, force].into_iter().zip(self.state.largest);
         let part = parts.map(|(off, largest)| if off > 0.0 { off / largest } else { 0.0 }).fold(0.0, f64::max);
         let part = (part - self.unresolved).max(0.0);
         let sizes = [[self.approach(), other.approach()], [Contact::force(self), Contact::force(other)]];
@@ -143,11 +150,18 @@ impl Contact for FrictionContact {
 
     /// Adaptive steps are compared with halves of them, which must not differ by what the solver leaves.
     fn lead(&mut self, stepping: Stepping, until: f64) -> (Progress, Box<dyn Control<Self>>) {
+        self.tolerance = self.normal.settings().tolerance;
         if let Stepping::Adaptive { tolerance } = stepping {
             self.unresolved = UNRESOLVED * tolerance;
-            self.solve_to(SOLVER_SHARE * tolerance);
+            self.tolerance = self.tolerance.min((SOLVER_SHARE * tolerance).max(MOST_ACCURATE));
         }
-        doubled::lead(self, stepping, until)
+        let saved = self.saved_run.take();
+        doubled::lead(self, saved.as_deref(), stepping, until)
+    }
+
+    #[cfg(feature = "checkpoint")]
+    fn save_run(&self, run: SavedRun<Plain>, path: &Path) -> Result<()> {
+        self.save_with(path, Some(run))
     }
 
     fn is_beyond(&self, error: &Error) -> bool {

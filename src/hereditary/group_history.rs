@@ -9,13 +9,15 @@ const ROUNDING: f64 = 1e-12;
 
 /// Displacements W of groups of elements that follow one [`ExponentialRule`]: 1 is the displacement of an element in
 /// contact, 0 that of an undisturbed one. Where there is friction, the groups move along the surface too, by U.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct GroupHistory {
     rule: ExponentialRule,
     normal: Past,
     tangential: Option<Past>,
 }
+
+clone_by_fields! { GroupHistory { rule, normal, tangential } }
 
 /// What one displacement of the groups was.
 #[derive(Debug)]
@@ -128,13 +130,6 @@ impl GroupHistory {
     /// predicted last.
     pub(crate) fn stiffness_over(&self, steps: f64) -> f64 {
         self.rule.equilibrium() + (self.rule.relaxing(steps) + self.rule.viscous()) / steps
-    }
-
-    /// Copies another without reallocating where there is room.
-    pub(crate) fn copy_from(&mut self, other: &GroupHistory) {
-        self.rule.clone_from(&other.rule);
-        self.normal.columns.clone_from(&other.normal.columns);
-        self.tangential.clone_from(&other.tangential);
     }
 
     /// Writes the displacement of each group at the end of a step, if nothing presses on it, to `free`. A polynomial

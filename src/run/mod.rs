@@ -266,6 +266,13 @@ pub trait Contact: Clone + Debug + Send + Sync + 'static {
         false
     }
 
+    /// Saves the contact with a run of doubled steps that continues from there.
+    #[cfg(all(feature = "checkpoint", feature = "contacts"))]
+    #[doc(hidden)]
+    fn save_run(&self, _run: doubled::SavedRun<doubled::plain::Plain>, _path: &std::path::Path) -> Result<()> {
+        Err(crate::error::coverage::RUN_IN_FILE.error())
+    }
+
     /// Fails if the material of bodies that touch is not known until the end of a run.
     #[doc(hidden)]
     fn is_known_until(&self, _end: f64) -> Result<()> {
@@ -276,7 +283,7 @@ pub trait Contact: Clone + Debug + Send + Sync + 'static {
     #[cfg(feature = "contacts")]
     #[doc(hidden)]
     fn lead(&mut self, stepping: Stepping, until: f64) -> (Progress, Box<dyn Control<Self>>) {
-        doubled::lead(self, stepping, until)
+        doubled::lead::<Self, doubled::plain::Plain>(self, None, stepping, until)
     }
 
     /// Progress and control of a run that begins here, or that continues from this saved contact.

@@ -4,10 +4,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use crate::contact::checkpoint::SavedRun;
+use crate::contact::checkpoint::{Besides, NO_RUN, malformed};
 use crate::contact::{StepReport, ViscoelasticContact};
-use crate::error::Result;
-use crate::file::failed;
+use crate::error::{CheckpointError, Result};
 use crate::run::Contact;
 use crate::run::autosave::Autosave;
 use crate::run::follow::Run;
@@ -70,7 +69,7 @@ impl ViscoelasticContact {
     /// # Errors
     /// If a rank is lost.
     pub fn to_bytes(&self) -> Result<Vec<u8>> {
-        self.bytes_with::<(Progress, StepControl)>(None).map_err(|error| failed(Path::new("bytes in memory"), error))
+        self.bytes_with::<(Progress, StepControl)>(None)
     }
 
     /// [`ViscoelasticContact::resume`] from the bytes of [`ViscoelasticContact::to_bytes`], or of a file.
@@ -80,7 +79,7 @@ impl ViscoelasticContact {
     /// # Errors
     /// As [`ViscoelasticContact::resume`].
     pub fn resume_bytes(&mut self, bytes: &[u8]) -> Result<()> {
-        let run = self.resume_bytes_with::<(Progress, StepControl)>(bytes)?;
+        let run = self.resume_bytes_with(bytes, &check)?;
         self.saved_run = run.map(|run| Arc::new(run) as _);
         Ok(())
     }
@@ -106,7 +105,7 @@ impl ViscoelasticContact {
     /// ([`Settings::window`](crate::contact::Settings::window)), nor after an indenter has moved or a load has broken
     /// the symmetry of the scene ([`CheckpointError::OtherScene`](crate::contact::CheckpointError::OtherScene)).
     pub fn resume(&mut self, path: impl AsRef<Path>) -> Result<()> {
-        let run = self.resume_with::<(Progress, StepControl)>(path.as_ref())?;
+        let run = self.resume_with(path.as_ref(), &check)?;
         self.saved_run = run.map(|run| Arc::new(run) as _);
         Ok(())
     }
@@ -179,8 +178,13 @@ impl<C: Contact> Run<'_, C> {
     }
 }
 
-impl SavedRun for (Progress, StepControl) {
-    fn fits(&self) -> bool {
-        self.0.fits() && self.1.fits()
+impl Besides for (Progress, StepControl) {
+    const KIND: &'static str = "in space";
+}
+
+fn check(run: Option<&(Progress, StepControl)>) -> Result<(), CheckpointError> {
+    match run {
+        Some((progress, control)) if !progress.fits() || !control.fits() => malformed(NO_RUN),
+        _ => Ok(()),
     }
 }

@@ -10,10 +10,10 @@ use std::path::Path;
 use crate::contact::StepReport;
 use crate::error::Result;
 use crate::load::{Load, LoadHistory};
+#[cfg(feature = "checkpoint")]
+use crate::run::doubled::SavedRun;
 use crate::run::doubled::judge::{FIRST_STEP, Judge, MAX_GROWTH, Record, SMALL, Tries, WITHOUT_ORDER};
 use crate::run::passage::{Passage, Span};
-#[cfg(feature = "checkpoint")]
-use crate::run::progress::Progress;
 use crate::run::trace::PARTS_OF_RUN;
 use crate::states::contact::StatesContact;
 use crate::states::levels::Demand;
@@ -243,8 +243,8 @@ impl Judge<StatesContact> for OnLevels {
     }
 
     #[cfg(feature = "checkpoint")]
-    fn save(contact: &StatesContact, progress: &Progress, record: &Record<OnLevels>, path: &Path) -> Result<()> {
-        contact.save_with(path, Some((progress.clone(), record.clone())))
+    fn save(contact: &StatesContact, run: SavedRun<OnLevels>, path: &Path) -> Result<()> {
+        contact.save_with(path, Some(run))
     }
 }
 

@@ -7,13 +7,11 @@ use crate::error::{Error, Result, StatesError};
 use crate::load::{Load, LoadHistory};
 use crate::rheology::TemperatureHistory;
 use crate::run::control::Control;
-use crate::run::doubled::Doubled;
+use crate::run::doubled::{SavedRun, lead};
 use crate::run::progress::Progress;
 use crate::run::{Contact, Run, Stepping};
 use crate::states::contact::StatesContact;
 use crate::states::control::OnLevels;
-#[cfg(feature = "checkpoint")]
-use crate::states::saved::SavedStatesRun;
 
 /// A [`Run`] of a [`StatesContact`], made by [`Contact::follow`]. Adaptive steps are taken whole and in two
 /// halves, and the halves are kept. The error of the step is the difference of both, in depth and force and in what
@@ -97,14 +95,7 @@ impl Contact for StatesContact {
     }
 
     fn lead(&mut self, stepping: Stepping, until: f64) -> (Progress, Box<dyn Control<Self>>) {
-        #[cfg(feature = "checkpoint")]
-        if let Some(Ok(saved)) = self.saved_run.take().map(|saved| saved.downcast::<SavedStatesRun>())
-            && saved.0.continues(self.time(), stepping, until)
-        {
-            let (progress, record) = (*saved).clone();
-            return (progress, Box::new(Doubled::continued(self, record)));
-        }
-        let control = Doubled::<StatesContact, OnLevels>::new(self, stepping, until);
-        (Progress::begin(self.time(), stepping), Box::new(control))
+        let saved = self.saved_run.take().and_then(|saved| saved.downcast::<SavedRun<OnLevels>>().ok());
+        lead(self, saved.as_deref(), stepping, until)
     }
 }

@@ -9,11 +9,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::contact::checkpoint::format::{Input, Output};
 use crate::contact::checkpoint::scene::{of_rule, of_text};
-use crate::contact::checkpoint::{check_clocks, malformed};
+use crate::contact::checkpoint::{NO_RUN, check_clocks, malformed};
 use crate::error::{CheckpointError, Error, Result};
 use crate::file::{in_memory, replace};
-use crate::run::doubled::judge::Record;
-use crate::run::progress::Progress;
+use crate::run::doubled::SavedRun;
 use crate::states::contact::StatesContact;
 use crate::states::control::OnLevels;
 use crate::states::curve::ElasticStates;
@@ -27,11 +26,8 @@ struct Saved<'a> {
     /// Approach that the last step prescribed.
     prescribed: Option<f64>,
     levels: Cow<'a, Levels>,
-    run: Option<SavedStatesRun>,
+    run: Option<SavedRun<OnLevels>>,
 }
-
-/// A run that continues from the state.
-pub(super) type SavedStatesRun = (Progress, Record<OnLevels>);
 
 impl StatesContact {
     /// Saves the whole state to a file, from which a contact of the same states, material and time rule continues
@@ -47,7 +43,7 @@ impl StatesContact {
     }
 
     /// [`StatesContact::save`] with a run that continues from there.
-    pub(super) fn save_with(&self, path: &Path, run: Option<SavedStatesRun>) -> Result<()> {
+    pub(super) fn save_with(&self, path: &Path, run: Option<SavedRun<OnLevels>>) -> Result<()> {
         let times = [self.time, self.reduced_time, self.undisturbed_until];
         let saved = Saved { times, prescribed: self.prescribed, levels: Cow::Borrowed(&self.levels), run };
         replace(path, |out| Output::begin(out, &self.parts(), &saved)?.finish())
@@ -114,7 +110,7 @@ impl StatesContact {
         }
         if saved.run.as_ref().is_some_and(|(progress, record)| !progress.fits() || !record.fits() || !record.own.fits())
         {
-            return malformed("a run that no contact can continue");
+            return malformed(NO_RUN);
         }
         check_clocks(time, reduced, self.scene.temperature.as_ref())?;
         Ok(saved)

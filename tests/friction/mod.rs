@@ -8,4 +8,5 @@ mod runs;
 mod space;
 mod space_known;
 mod space_runs;
+mod space_saved;
 mod steps;

@@ -16,6 +16,7 @@ use serde::{Deserialize, Serialize};
 use crate::contact::{Computation, State, ViscoelasticContact};
 use crate::equilibrium::{Held, Indenter, Region};
 use crate::error::{CheckpointError, Error, Result};
+use crate::file::in_memory;
 use crate::geometry::Gap;
 use crate::hereditary::{Role, interleaved, runs};
 use crate::parallel::Rows;
@@ -24,38 +25,43 @@ pub(crate) use check::{check_clocks, malformed};
 use format::{Input, Output, PIECE};
 use scene::Parts;
 
-/// How far a run has come, as a file keeps it. Runs use contacts, so their type is a parameter here.
-pub(crate) trait SavedRun: Clone + Serialize + DeserializeOwned {
-    /// Whether a run can continue from these values; a damaged file may hold any.
-    fn fits(&self) -> bool;
+/// Why a run in a file is rejected.
+pub(crate) const NO_RUN: &str = "a run that no contact can continue";
+
+/// What else a file keeps: how far a run has come, and what friction has done. Both use contacts, so their type is a
+/// parameter here.
+pub(crate) trait Besides: Clone + Serialize + DeserializeOwned {
+    /// What tells its contacts from others.
+    const KIND: &'static str;
 }
+
+/// Rejects what no contact can continue from: a damaged file may hold anything.
+pub(crate) type Check<'a, P> = &'a dyn Fn(Option<&P>) -> Result<(), CheckpointError>;
 
 /// What the fields of a file follow.
 #[derive(Serialize, Deserialize)]
-#[serde(bound(deserialize = "P: SavedRun"))]
-struct Saved<'a, P: SavedRun> {
+#[serde(bound(deserialize = "P: Besides"))]
+struct Saved<'a, P: Besides> {
     /// On the region of all ranks, without fields.
     state: State,
     /// The gap, where it is no longer the one built.
     gap: Option<Cow<'a, Gap>>,
-    run: Option<Cow<'a, P>>,
+    besides: Option<Cow<'a, P>>,
 }
 
 impl ViscoelasticContact {
-    /// [`ViscoelasticContact::save`] with how far a run along a history has come.
-    pub(crate) fn save_with<P: SavedRun>(&self, path: &Path, run: Option<&P>) -> Result<()> {
-        self.computation.state.held.region.rows().replace_file(path, |out| self.write(out, run))
+    /// [`ViscoelasticContact::save`] with more.
+    pub(crate) fn save_with<P: Besides>(&self, path: &Path, besides: Option<&P>) -> Result<()> {
+        self.computation.state.held.region.rows().replace_file(path, |out| self.write(out, besides))
     }
 
     /// What [`ViscoelasticContact::save_with`] writes, in memory.
-    pub(crate) fn bytes_with<P: SavedRun>(&self, run: Option<&P>) -> io::Result<Vec<u8>> {
-        let mut out = Cursor::new(Vec::new());
-        self.write(Some(&mut out), run)?;
-        Ok(out.into_inner())
+    pub(crate) fn bytes_with<P: Besides>(&self, besides: Option<&P>) -> Result<Vec<u8>> {
+        in_memory(|out| self.write(Some(out), besides))
     }
 
     /// Writes on the first rank the state of all.
-    fn write<P: SavedRun>(&self, out: Option<&mut (impl Write + Seek)>, run: Option<&P>) -> io::Result<()> {
+    fn write<P: Besides>(&self, out: Option<&mut (impl Write + Seek)>, besides: Option<&P>) -> io::Result<()> {
         let state = &self.computation.state;
         let Held { region, indenter, .. } = &state.held;
         let rows = region.rows();
@@ -63,9 +69,9 @@ impl ViscoelasticContact {
         let saved = Saved {
             state: state.map(&all, &mut |_| Vec::new()),
             gap: (!Arc::ptr_eq(indenter, &self.built)).then(|| Cow::Borrowed(indenter.gap())),
-            run: run.map(Cow::Borrowed),
+            besides: besides.map(Cow::Borrowed),
         };
-        let scene = self.parts();
+        let scene = self.parts(P::KIND);
         let mut out = out.map(|out| Output::begin(out, &scene, &saved)).transpose();
         state.each(&mut |field| {
             let kept = if let Role::Work = field.role { 0 } else { field.per_cell };
@@ -87,31 +93,32 @@ impl ViscoelasticContact {
         out?.map_or(Ok(()), Output::finish)
     }
 
-    /// Puts a saved state in the place of this one, and returns the run that saved it.
-    pub(crate) fn resume_with<P: SavedRun>(&mut self, path: &Path) -> Result<Option<P>> {
-        self.resume_from(path, || Input::open(path))
+    /// Puts a saved state in the place of this one, and returns what was saved with it.
+    pub(crate) fn resume_with<P: Besides>(&mut self, path: &Path, check: Check<'_, P>) -> Result<Option<P>> {
+        self.resume_from(path, || Input::open(path), check)
     }
 
     /// The same from the bytes of such a file.
-    pub(crate) fn resume_bytes_with<P: SavedRun>(&mut self, bytes: &[u8]) -> Result<Option<P>> {
-        self.resume_from(Path::new("bytes in memory"), || Input::begin(Cursor::new(bytes)))
+    pub(crate) fn resume_bytes_with<P: Besides>(&mut self, bytes: &[u8], check: Check<'_, P>) -> Result<Option<P>> {
+        self.resume_from(Path::new("bytes in memory"), || Input::begin(Cursor::new(bytes)), check)
     }
 
-    fn resume_from<P: SavedRun, R: Read + Seek>(
+    fn resume_from<P: Besides, R: Read + Seek>(
         &mut self,
         path: &Path,
         open: impl FnOnce() -> Result<Input<R>, CheckpointError>,
+        check: Check<'_, P>,
     ) -> Result<Option<P>> {
         let rows = self.computation.state.held.region.rows();
         rows.or_loss(|| {
             let failed = |cause| Error::Checkpoint { path: path.to_owned(), cause };
-            let scene = self.parts();
+            let scene = self.parts(P::KIND);
             let mut file = rows.agree(open().map_err(failed))?;
             // not one save on one rank and the next on another
             rows.same([f64::from(file.stated_checksum)])?;
             let is_damaged = rows.any(rows.rank() == 0 && !file.is_intact());
-            let read = if is_damaged { Err(CheckpointError::Damaged) } else { self.read(&mut file, &scene) };
-            let (mut state, run) = rows.agree(read.map_err(failed))?;
+            let read = if is_damaged { Err(CheckpointError::Damaged) } else { self.read(&mut file, &scene, check) };
+            let (mut state, besides) = rows.agree(read.map_err(failed))?;
             state.sum_up();
             if state.indenter_is_new {
                 // the indenter of the last step is not saved
@@ -121,21 +128,20 @@ impl ViscoelasticContact {
             rows.intact()?;
             self.computation = computation;
             self.view.refresh(&self.computation.state.held);
-            Ok(run)
+            Ok(besides)
         })
     }
 
-    /// The state in a file on the local rows, and how far a run had come.
-    fn read<P: SavedRun>(
+    /// The state in a file on the local rows, and what else there is.
+    fn read<P: Besides>(
         &self,
         file: &mut Input<impl Read + Seek>,
         scene: &Parts,
+        check: Check<'_, P>,
     ) -> Result<(State, Option<P>), CheckpointError> {
-        let Saved { mut state, gap, run }: Saved<'_, P> = file.contents(scene)?;
+        let Saved { mut state, gap, besides }: Saved<'_, P> = file.contents(scene)?;
         self.check(&state, gap.as_deref())?;
-        if run.as_deref().is_some_and(|run| !run.fits()) {
-            return malformed("a run that no contact can continue");
-        }
+        check(besides.as_deref())?;
         let gap = gap.map(|gap| Arc::new(Indenter::new(gap.into_owned(), self.scene.ground.bodies)));
         state.held.indenter = gap.unwrap_or_else(|| Arc::clone(&self.built));
         let region = state.held.region.clone().shared_like(&self.computation.state.held.region);
@@ -151,7 +157,7 @@ impl ViscoelasticContact {
         });
         sound?;
         check_fields(&state)?;
-        Ok((state, run.map(Cow::into_owned)))
+        Ok((state, besides.map(Cow::into_owned)))
     }
 }
 

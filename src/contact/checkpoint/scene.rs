@@ -18,7 +18,7 @@ pub(crate) type Parts = [(&'static str, Vec<f64>)];
 const ROUNDING: f64 = 1e-9;
 
 /// Rejects the saved parts of another scene, and names the first that differs.
-pub(super) fn require(saved: &[Vec<f64>], scene: &Parts) -> Result<(), CheckpointError> {
+pub(crate) fn require(saved: &[Vec<f64>], scene: &Parts) -> Result<(), CheckpointError> {
     let is_same = |(a, b): (&f64, &f64)| a == b || (a - b).abs() <= ROUNDING * a.abs().max(b.abs());
     let are_same = |a: &Vec<f64>, b: &Vec<f64>| a.len() == b.len() && a.iter().zip(b).all(is_same);
     let mut parts = scene.iter().enumerate();
@@ -60,7 +60,7 @@ fn of_gap(indenter: &Indenter, region: &Region) -> Vec<f64> {
 
 impl ViscoelasticContact {
     /// A call of all ranks.
-    pub(super) fn parts(&self) -> Vec<(&'static str, Vec<f64>)> {
+    pub(super) fn parts(&self, kind: &str) -> Vec<(&'static str, Vec<f64>)> {
         let Scene { ground, temperature, .. } = &*self.scene;
         let Ground { grid, kernel, bodies, attraction, .. } = ground;
         let Settings { time_rule, frame, symmetry, window, series_tolerance, .. } = ground.settings;
@@ -69,7 +69,7 @@ impl ViscoelasticContact {
         let folded = if symmetry { self.built.even_axes(grid) } else { [false; 2] };
         let of_gap = of_gap(&self.built, &Region::whole(grid, folded).shared_like(region));
         vec![
-            ("kind of contact", of_text(&"in space")),
+            ("kind of contact", of_text(&kind)),
             ("grid", [grid.cells().map(|n| n as f64), grid.spacing()].concat()),
             ("kernel", [of_text(&kernel.to_string()), kernel.mark()].concat()),
             ("time rule, frame, symmetry or window", of_text(&(time_rule, frame, symmetry, window))),

@@ -17,7 +17,7 @@ const START_LOST: &str = "the end of that step, whose start is lost once another
 #[derive(Clone)]
 pub struct Snapshot {
     scene: Arc<Scene>,
-    state: State,
+    pub(crate) state: State,
 }
 
 impl Snapshot {

@@ -6,13 +6,11 @@ use std::path::Path;
 
 use crate::contact::StepReport;
 use crate::error::Result;
-#[cfg(feature = "checkpoint")]
-use crate::error::coverage;
 use crate::load::{Load, LoadHistory};
 use crate::run::Contact;
-use crate::run::passage::{Passage, Span};
 #[cfg(feature = "checkpoint")]
-use crate::run::progress::Progress;
+use crate::run::doubled::SavedRun;
+use crate::run::passage::{Passage, Span};
 use crate::run::trace::{bends, looks};
 
 /// First step after a jump or a corner, over the time to the next one.
@@ -96,9 +94,7 @@ pub(crate) trait Judge<C: Contact>: Default + Clone + Debug + Send + Sync + 'sta
 
     /// Saves a contact with a run that continues from there.
     #[cfg(feature = "checkpoint")]
-    fn save(_: &C, _: &Progress, _: &Record<Self>, _: &Path) -> Result<()> {
-        Err(coverage::RUN_IN_FILE.error())
-    }
+    fn save(contact: &C, run: SavedRun<Self>, path: &Path) -> Result<()>;
 
     /// Maximum approach and force of the run, the step that was tried included, for errors relative to them.
     fn greatest(record: &Record<Self>, halves: &C) -> [f64; 2];
@@ -115,7 +111,7 @@ pub(crate) struct Tries<C> {
 /// What the control knows of the run: all that a run from a file needs.
 #[derive(Debug, Clone, Default)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct Record<J> {
+pub struct Record<J> {
     /// The load that acts, and the one along the surface; unknown before the first step.
     pub(in crate::run) loads: Vec<Load>,
     pub(crate) tolerance: f64,

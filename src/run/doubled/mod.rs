@@ -5,7 +5,7 @@
 //! within the step, and ends steps at its events.
 
 pub(crate) mod judge;
-mod plain;
+pub(crate) mod plain;
 mod rounded;
 
 #[cfg(feature = "checkpoint")]
@@ -22,7 +22,6 @@ use crate::run::histories::Histories;
 use crate::run::passage::{AT_START, Passage, Span};
 use crate::run::progress::{Progress, SAME_TIME, Stepping};
 use judge::{FIRST_STEP, Judge, MAX_GROWTH, Record, Tries};
-use plain::Plain;
 use rounded::Rounded;
 
 /// Rounding of times: no step is shorter than this part of the time.
@@ -64,12 +63,7 @@ fn order(before: Option<(f64, f64)>, (length, error): (f64, f64), most: f64) -> 
 }
 
 impl<C: Contact, J: Judge<C>> Doubled<C, J> {
-    pub(crate) fn new(contact: &C, stepping: Stepping, until: f64) -> Doubled<C, J> {
-        let (start, (_, tolerance)) = (contact.time(), stepping.lengths());
-        Doubled::continued(contact, Record { tolerance, start, until, by_force: true, ..Record::default() })
-    }
-
-    pub(crate) fn continued(contact: &C, record: Record<J>) -> Doubled<C, J> {
+    fn new(contact: &C, record: Record<J>) -> Doubled<C, J> {
         let (before, whole) = (contact.clone(), J::trial(contact));
         let tries = Tries { halves: whole.clone(), middle: whole.clone(), whole };
         Doubled { record, before, halved: false, tries, passage: Passage::default(), turn: None }
@@ -207,9 +201,26 @@ impl<C: Contact, J: Judge<C>> Doubled<C, J> {
     }
 }
 
-/// Progress and control of the run of a contact of a user's own.
-pub(crate) fn lead<C: Contact>(contact: &C, stepping: Stepping, until: f64) -> (Progress, Box<dyn Control<C>>) {
-    (Progress::begin(contact.time(), stepping), Box::new(Doubled::<C, Plain>::new(contact, stepping, until)))
+/// A run in a file.
+pub type SavedRun<J> = (Progress, Record<J>);
+
+/// Progress and control of a run that begins here, or that continues a saved one.
+pub(crate) fn lead<C: Contact, J: Judge<C>>(
+    contact: &C,
+    saved: Option<&SavedRun<J>>,
+    stepping: Stepping,
+    until: f64,
+) -> (Progress, Box<dyn Control<C>>) {
+    let time = contact.time();
+    let (progress, record) = match saved.filter(|(progress, _)| progress.continues(time, stepping, until)) {
+        Some(saved) => saved.clone(),
+        None => {
+            let (_, tolerance) = stepping.lengths();
+            let record = Record { tolerance, start: time, until, by_force: true, ..Record::default() };
+            (Progress::begin(time, stepping), record)
+        }
+    };
+    (progress, Box::new(Doubled::<C, J>::new(contact, record)))
 }
 
 /// The report of a step without work.
@@ -311,6 +322,6 @@ impl<C: Contact, J: Judge<C>> Control<C> for Doubled<C, J> {
 
     #[cfg(feature = "checkpoint")]
     fn save_run(&self, contact: &C, progress: &Progress, path: &Path) -> Result<()> {
-        J::save(contact, progress, &self.record, path)
+        J::save(contact, (progress.clone(), self.record.clone()), path)
     }
 }

@@ -1,9 +1,14 @@
 //! How the steps of a contact of a user's own are judged.
 
+#[cfg(feature = "checkpoint")]
+use std::path::Path;
+
 use crate::contact::StepReport;
 use crate::error::Result;
 use crate::load::{Load, LoadHistory};
 use crate::run::Contact;
+#[cfg(feature = "checkpoint")]
+use crate::run::doubled::SavedRun;
 use crate::run::doubled::judge::{Judge, Record, SMALL, Tries, WITHOUT_ORDER};
 use crate::run::passage::{Passage, Span};
 
@@ -53,6 +58,11 @@ impl<C: Contact> Judge<C> for Plain {
         let parts = whole.difference(halves).into_iter().zip(scales.into_iter().zip(record.greatest)).map(over);
         let worst = parts.fold(0.0, |worst, part| if part.is_nan() { f64::INFINITY } else { part.max(worst) });
         Ok(if changes { WITHOUT_ORDER } else { 1.0 } * worst)
+    }
+
+    #[cfg(feature = "checkpoint")]
+    fn save(contact: &C, run: SavedRun<Plain>, path: &Path) -> Result<()> {
+        contact.save_run(run, path)
     }
 
     fn greatest(record: &Record<Plain>, halves: &C) -> [f64; 2] {

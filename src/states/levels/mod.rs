@@ -107,7 +107,7 @@ impl Levels {
 
     /// Copies another without reallocating where there is room.
     pub(super) fn copy_from(&mut self, other: &Levels) {
-        self.history.copy_from(&other.history);
+        self.history.clone_from(&other.history);
         self.groups.clone_from(&other.groups);
         self.trial.clone_from(&other.trial);
         (self.merge_from, self.passed) = (other.merge_from, other.passed);
