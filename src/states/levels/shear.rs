@@ -40,8 +40,8 @@ pub(in crate::states) struct Shear {
     pub(in crate::states) slid: f64,
     /// Level up to which the contact sticks \[m²\].
     pub(in crate::states) stick: f64,
-    /// Maximum of |motion| and of |force| so far.
-    pub(in crate::states) maxima: [f64; 2],
+    /// Maximum so far of |motion|, of |force| and of |work|.
+    pub(in crate::states) maxima: [f64; 3],
     /// Work that the body has done along the surface, and the part of it that slip has dissipated \[J\].
     pub(in crate::states) work: f64,
     pub(in crate::states) lost: f64,
@@ -52,9 +52,9 @@ clone_by_fields! { Shear { whole, trial, tractions, force, motion, slid, stick, 
 impl Shear {
     #[cfg(feature = "checkpoint")]
     pub(super) fn fits(&self) -> bool {
-        let Shear { force, motion, slid, stick, maxima: [far, most], work, lost, .. } = self;
+        let Shear { force, motion, slid, stick, maxima: [far, most, done], work, lost, .. } = self;
         [force, motion, slid, work, lost].iter().all(|value| value.is_finite())
-            && [stick, far, most].iter().all(|value| value.is_finite() && **value >= 0.0)
+            && [stick, far, most, done].iter().all(|value| value.is_finite() && **value >= 0.0)
     }
 
     /// Of the body: that of the contact, and how far it has slid.
@@ -111,6 +111,19 @@ struct Outcome {
 fn widths(groups: &[Group], k: usize) -> [f64; 2] {
     let (bottom, lower) = k.checked_sub(1).map_or((0.0, 0.0), |k| (groups[k].top, groups[k].motions.depth));
     [groups[k].top - bottom, groups[k].motions.depth - lower]
+}
+
+/// What levels lose that begin to slip while the edge moves, over what they would lose if it stood where it ends. A zone
+/// that slips is `now` so wide, was `before`, and its inner end went so far in the step; each level that it passes loses
+/// about the square of its width then.
+fn travelled([now, before]: [f64; 2], far: f64) -> f64 {
+    let rest = (now - far).max(0.0);
+    let whole = now * now + now * rest + rest * rest;
+    if now > ROUNDING * (before + far) && far > 0.0 {
+        (now * now + now * before + before * before) * far / (whole * far.min(now))
+    } else {
+        1.0
+    }
 }
 
 /// ∫ (δ(top) − δ) dl of a group of this width in level.
@@ -233,7 +246,7 @@ impl Levels {
         let left = if part < 1.0 { 0.0 } else { needed - needed / part };
         let mut outcome = Outcome { stick: met.start, met, share, sense, left };
         self.slip(states, wish, &mut outcome);
-        self.commit_shear(along, &outcome);
+        self.commit_shear(along, edge, &outcome);
     }
 
     /// Lets the groups that were held stick, and nothing act on the others. Returns what is lacking of a wish.
@@ -297,23 +310,37 @@ impl Levels {
     }
 
     /// Moves the groups by their tractions, and takes in what the step has done.
-    fn commit_shear(&mut self, along: Demand, outcome: &Outcome) {
-        let Outcome { stick, ref met, share, left, .. } = *outcome;
-        let compliance = self.history.rule().compliance();
+    fn commit_shear(&mut self, along: Demand, edge: f64, outcome: &Outcome) {
+        let Outcome { stick, ref met, share, sense, left } = *outcome;
+        let (compliance, level) = (self.history.rule().compliance(), self.level);
         let Levels { history, groups, shear: Some(shear), .. } = self else { return };
         let Some(now) = history.sheared() else { return };
-        let before = [shear.force, shear.displacement()];
-        let (mut force, mut motion, mut lost) = (0.0, 0.0, 0.0);
-        // of the levels above, ∫ θ dl and ∫ θ dδ, both in the mean of the step
-        let mut above = [0.0; 2];
+        let (before, stuck) = ([shear.force, shear.displacement()], shear.stick);
+        let (mut force, mut motion, mut lost, mut begun, mut from) = (0.0, 0.0, 0.0, 0.0, edge);
+        // of the levels above, ∫ θ dl and ∫ θ dδ: in the mean of the step, and while those below begin to slip
+        let mut above = [[0.0; 2]; 2];
         for k in (0..groups.len()).rev() {
             let ([width, depth], traction) = (widths(groups, k), shear.tractions[k]);
             shear.trial[k] = if k < stick { now[k] } else { shear.trial[k] + compliance * traction };
-            let (mean, change) = (0.5 * (groups[k].shear + traction), shear.trial[k] - now[k]);
+            // what is met has moved before it touched, and what is released moves after it touched
+            let slips = shear.whole || (stick..met.start).contains(&k);
+            let slipped = shear.whole || groups[k].top > stuck && sense * groups[k].shear > 0.0;
+            let mean = 0.5 * (groups[k].shear + traction);
+            let acts = if slips { [if slipped { mean } else { traction }; 2] } else { [mean, traction] };
             // ∫ ΔU (κ(l′) − κ(l)) θ dl dl′ over l > l′ with κ = dδ/dl: what slips below a level slips there
-            let inner = depth * width - 2.0 * inner_work(groups, k, width);
-            lost += change * (above[0] * depth - above[1] * width + mean * inner);
-            above = [above[0] + mean * width, above[1] + mean * depth];
+            if slips {
+                let inner = depth * width - 2.0 * inner_work(groups, k, width);
+                let [of_level, of_depth] = above[usize::from(!slipped)];
+                let change = shear.trial[k] - now[k];
+                let sum = if slipped { &mut lost } else { &mut begun };
+                *sum += change * (of_level * depth - of_depth * width + acts[0] * inner);
+            }
+            if slipped && !shear.whole {
+                from = stuck;
+            }
+            for (above, acts) in above.iter_mut().zip(acts) {
+                *above = [above[0] + acts * width, above[1] + acts * depth];
+            }
             (force, motion) = (force + traction * width, motion + shear.trial[k] * depth);
             groups[k].shear = traction;
         }
@@ -325,15 +352,20 @@ impl Levels {
         (shear.force, shear.motion) = (force, motion);
         let mean = 0.5 * (before[0] + force);
         shear.work += mean * (shear.displacement() - before[1]);
-        shear.lost += lost + if let Demand::Force(_) = along { 0.0 } else { mean * left };
-        shear.maxima = [shear.maxima[0].max(shear.displacement().abs()), shear.maxima[1].max(force.abs())];
+        // it slides under what it carries then, not under what it carried while it stuck
+        let sliding = if stuck > 0.0 && !shear.whole { force } else { mean };
+        lost += if let Demand::Force(_) = along { 0.0 } else { sliding * left };
+        let bottom = stick.checked_sub(1).map_or(0.0, |k| groups[k].top);
+        shear.lost += lost + begun * travelled([level - bottom, edge - from], from - bottom);
+        let now = [shear.displacement(), force, shear.work];
+        shear.maxima.iter_mut().zip(now).for_each(|(most, now)| *most = most.max(now.abs()));
         let stick = if share.abs() < 1.0 && stick == met.start { met.end } else { stick };
         shear.stick = stick.checked_sub(1).map_or(0.0, |k| groups[k].top);
     }
 
     /// How far apart two outcomes of one step are along the surface: ∫ |δU| dδ, the most that their displacements can
-    /// ever differ by; the forces; and what slip has dissipated.
-    pub(in crate::states) fn shear_distance(&self, other: &Levels) -> Option<[f64; 3]> {
+    /// ever differ by; the displacements; the forces; and what slip has dissipated.
+    pub(in crate::states) fn shear_distance(&self, other: &Levels) -> Option<[f64; 4]> {
         let (one, two) = (self.shear.as_ref()?, other.shear.as_ref()?);
         let (own, others) = (self.history.sheared()?, other.history.sheared()?);
         let (mut far, mut k, mut lower) = (0.0, 0, 0.0);
@@ -349,7 +381,16 @@ impl Levels {
                 k += 1;
             }
         }
-        Some([far + (one.slid - two.slid).abs(), (one.force - two.force).abs(), (one.lost - two.lost).abs()])
+        let off = [one.displacement() - two.displacement(), one.force - two.force, one.lost - two.lost].map(f64::abs);
+        Some([far + (one.slid - two.slid).abs(), off[0], off[1], off[2]])
+    }
+
+    /// Continues the loss of a step in halves by so much of its difference to that of the whole: every step errs in the
+    /// same sense, and nothing brings back a loss.
+    pub(in crate::states) fn extrapolate_loss(&mut self, [before, whole]: [&Levels; 2], share: f64) {
+        if let (Some(shear), Some(before), Some(whole)) = (&mut self.shear, &before.shear, &whole.shear) {
+            shear.lost = f64::max(before.lost, shear.lost + share * (shear.lost - whole.lost));
+        }
     }
 
     /// Releases all groups in a jump of a body without elastic response.
