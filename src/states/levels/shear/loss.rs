@@ -1,7 +1,7 @@
 //! What a step does along the surface: how far its groups move, and what they lose by slip.
 
 use super::{Outcome, inner_work, widths};
-use crate::states::levels::{Demand, Levels, ROUNDING};
+use crate::states::levels::{Demand, Levels};
 
 /// What levels lose that begin to slip while the edge moves, over what they would lose if it stood where it ends. A zone
 /// that slips is `now` so wide, was `before`, and its inner end went so far in the step; each level that it passes loses
@@ -9,7 +9,8 @@ use crate::states::levels::{Demand, Levels, ROUNDING};
 fn travelled(now: f64, before: f64, far: f64) -> f64 {
     let rest = (now - far).max(0.0);
     let whole = now * now + now * rest + rest * rest;
-    if now > ROUNDING * (before + far) && far > 0.0 {
+    // what hardly slips at the end is rounding, and tells nothing of the zone before
+    if far > 0.0 && now > 0.1 * (before + far) {
         (now * now + now * before + before * before) * far / (whole * far.min(now))
     } else {
         1.0
