@@ -198,12 +198,20 @@ impl Judge<StatesContact> for OnLevels {
         if let (Some(off), Some(shear)) = (whole.levels.shear_distance(&halves.levels), &halves.levels.shear) {
             // early in a run, what acts along the surface is small beside what will act
             let along = SMALL * record.greatest_along[0] / halves.reached_along();
-            let ahead =
+            let [along, pressed] =
                 [along, greatest[1] / reached[1]].map(|ahead| if ahead.is_finite() { ahead.max(1.0) } else { 1.0 });
-            let [far, most] = shear.maxima;
-            let scales = [SMALL * far * ahead[0], SMALL * most * ahead[0].max(ahead[1])];
-            see([off[0], off[1]], [shear.displacement().abs().max(scales[0]), shear.force.abs().max(scales[1])]);
-            see([off[2], 0.0], [shear.lost.max(SMALL * far * most * ahead[0].powi(2)), 0.0]);
+            let (pressed, [far, most, done]) = (along.max(pressed), shear.maxima.map(|most| SMALL * most));
+            let scales = [shear.displacement().abs().max(far * along), shear.force.abs().max(most * pressed)];
+            see([off[0], off[2]], scales);
+            // of no certain order where edges move in the step: the halves err by no more than they differ from the whole
+            see([off[3] / OF_HALVES, 0.0], [shear.lost.max(done.max(far * most / SMALL) * along * pressed), 0.0]);
+            // levels that stick keep what a step has moved them by
+            let time = end - record.corner;
+            let lasting = |demand| halves.levels.lasting(&halves.states, demand, time / half);
+            let lasting = contact.along(end, end - now, None)?.map_or(0.0, lasting);
+            let steps = AIM * lasting * (time / (end - now)).min(f64::from(PARTS_OF_RUN));
+            see([steps * off[1], 0.0], scales);
+            halves.levels.extrapolate_loss([contact, &*whole].map(|contact| &contact.levels), OF_HALVES);
         }
         // what steps like this one add since the last corner, and nothing brings back, may be as large as the
         // tolerance: to the depth under a spring, and to the surface of bodies apart that resist rates alone

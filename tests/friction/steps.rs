@@ -69,7 +69,28 @@ fn oblique_loading_sticks() {
             assert_eq!(contact.stick_level(), contact.level(), "seed {seed}, step {step}");
         }
         assert!(worst < 1e-10, "seed {seed}: {worst:e}");
+        let lost = contact.lateral_work().slip;
+        assert!(lost.abs() < 1e-12, "seed {seed}: what sticks lost {lost:e}");
     }
+}
+
+/// At once levels slip one after the other, so that the loss depends on where a force turns, not on the steps between.
+#[test]
+fn losses_at_once_do_not_depend_on_steps() {
+    let lost = |parts: u32| {
+        let (mut contact, mut from) = (ball(&zener(), 0.4), 0.0);
+        contact.step(0.0, Load::force(1.0)).unwrap();
+        for to in [0.3, -0.2, 0.25] {
+            for k in 1..=parts {
+                let along = from + (to - from) * f64::from(k) / f64::from(parts);
+                contact.step_sheared(0.0, Load::force(1.0), Load::force(along)).unwrap();
+            }
+            from = to;
+        }
+        contact.lateral_work().slip
+    };
+    let (one, many) = (lost(1), lost(50));
+    assert!(many > 0.0 && (one / many - 1.0).abs() < 1e-9, "{one:e}, {many:e}");
 }
 
 /// Displacements and springs that were read off a run under forces bring the forces back.

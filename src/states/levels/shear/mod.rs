@@ -8,6 +8,8 @@
 //!
 //! θ, U and what they make are divided by the coefficient of friction here.
 
+mod loss;
+
 use std::ops::Range;
 
 use crate::error::{Result, StatesError, StepError};
@@ -40,8 +42,8 @@ pub(in crate::states) struct Shear {
     pub(in crate::states) slid: f64,
     /// Level up to which the contact sticks \[m²\].
     pub(in crate::states) stick: f64,
-    /// Maximum of |motion| and of |force| so far.
-    pub(in crate::states) maxima: [f64; 2],
+    /// Maximum so far of |motion|, of |force| and of |work|.
+    pub(in crate::states) maxima: [f64; 3],
     /// Work that the body has done along the surface, and the part of it that slip has dissipated \[J\].
     pub(in crate::states) work: f64,
     pub(in crate::states) lost: f64,
@@ -52,9 +54,9 @@ clone_by_fields! { Shear { whole, trial, tractions, force, motion, slid, stick, 
 impl Shear {
     #[cfg(feature = "checkpoint")]
     pub(super) fn fits(&self) -> bool {
-        let Shear { force, motion, slid, stick, maxima: [far, most], work, lost, .. } = self;
+        let Shear { force, motion, slid, stick, maxima: [far, most, done], work, lost, .. } = self;
         [force, motion, slid, work, lost].iter().all(|value| value.is_finite())
-            && [stick, far, most].iter().all(|value| value.is_finite() && **value >= 0.0)
+            && [stick, far, most, done].iter().all(|value| value.is_finite() && **value >= 0.0)
     }
 
     /// Of the body: that of the contact, and how far it has slid.
@@ -233,7 +235,7 @@ impl Levels {
         let left = if part < 1.0 { 0.0 } else { needed - needed / part };
         let mut outcome = Outcome { stick: met.start, met, share, sense, left };
         self.slip(states, wish, &mut outcome);
-        self.commit_shear(along, &outcome);
+        self.commit_shear(along, edge, &outcome);
     }
 
     /// Lets the groups that were held stick, and nothing act on the others. Returns what is lacking of a wish.
@@ -294,62 +296,6 @@ impl Levels {
             let Some(shear) = &mut self.shear else { return };
             (stick..k + 1 + added).for_each(|k| shear.tractions[k] = outcome.sense * self.groups[k].traction);
         }
-    }
-
-    /// Moves the groups by their tractions, and takes in what the step has done.
-    fn commit_shear(&mut self, along: Demand, outcome: &Outcome) {
-        let Outcome { stick, ref met, share, left, .. } = *outcome;
-        let compliance = self.history.rule().compliance();
-        let Levels { history, groups, shear: Some(shear), .. } = self else { return };
-        let Some(now) = history.sheared() else { return };
-        let before = [shear.force, shear.displacement()];
-        let (mut force, mut motion, mut lost) = (0.0, 0.0, 0.0);
-        // of the levels above, ∫ θ dl and ∫ θ dδ, both in the mean of the step
-        let mut above = [0.0; 2];
-        for k in (0..groups.len()).rev() {
-            let ([width, depth], traction) = (widths(groups, k), shear.tractions[k]);
-            shear.trial[k] = if k < stick { now[k] } else { shear.trial[k] + compliance * traction };
-            let (mean, change) = (0.5 * (groups[k].shear + traction), shear.trial[k] - now[k]);
-            // ∫ ΔU (κ(l′) − κ(l)) θ dl dl′ over l > l′ with κ = dδ/dl: what slips below a level slips there
-            let inner = depth * width - 2.0 * inner_work(groups, k, width);
-            lost += change * (above[0] * depth - above[1] * width + mean * inner);
-            above = [above[0] + mean * width, above[1] + mean * depth];
-            (force, motion) = (force + traction * width, motion + shear.trial[k] * depth);
-            groups[k].shear = traction;
-        }
-        if let Demand::Force(wanted) = along {
-            force = wanted;
-        } else {
-            shear.slid += left;
-        }
-        (shear.force, shear.motion) = (force, motion);
-        let mean = 0.5 * (before[0] + force);
-        shear.work += mean * (shear.displacement() - before[1]);
-        shear.lost += lost + if let Demand::Force(_) = along { 0.0 } else { mean * left };
-        shear.maxima = [shear.maxima[0].max(shear.displacement().abs()), shear.maxima[1].max(force.abs())];
-        let stick = if share.abs() < 1.0 && stick == met.start { met.end } else { stick };
-        shear.stick = stick.checked_sub(1).map_or(0.0, |k| groups[k].top);
-    }
-
-    /// How far apart two outcomes of one step are along the surface: ∫ |δU| dδ, the most that their displacements can
-    /// ever differ by; the forces; and what slip has dissipated.
-    pub(in crate::states) fn shear_distance(&self, other: &Levels) -> Option<[f64; 3]> {
-        let (one, two) = (self.shear.as_ref()?, other.shear.as_ref()?);
-        let (own, others) = (self.history.sheared()?, other.history.sheared()?);
-        let (mut far, mut k, mut lower) = (0.0, 0, 0.0);
-        for (group, now) in other.groups.iter().zip(others) {
-            loop {
-                let inside = self.groups.get(k).filter(|own| own.top < group.top);
-                let upper = inside.unwrap_or(group).motions.depth;
-                far += (now - own.get(k).copied().unwrap_or(0.0)).abs() * (upper - lower);
-                lower = upper;
-                if inside.is_none() {
-                    break;
-                }
-                k += 1;
-            }
-        }
-        Some([far + (one.slid - two.slid).abs(), (one.force - two.force).abs(), (one.lost - two.lost).abs()])
     }
 
     /// Releases all groups in a jump of a body without elastic response.

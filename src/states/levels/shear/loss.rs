@@ -1,0 +1,104 @@
+//! What a step does along the surface: how far its groups move, and what they lose by slip.
+
+use super::{Outcome, inner_work, widths};
+use crate::states::levels::{Demand, Levels};
+
+/// What levels lose that begin to slip while the edge moves, over what they would lose if it stood where it ends. A zone
+/// that slips is `now` so wide, was `before`, and its inner end went so far in the step; each level that it passes loses
+/// about the square of its width then.
+fn travelled(now: f64, before: f64, far: f64) -> f64 {
+    let rest = (now - far).max(0.0);
+    let whole = now * now + now * rest + rest * rest;
+    // what hardly slips at the end is rounding, and tells nothing of the zone before
+    if far > 0.0 && now > 0.1 * (before + far) {
+        (now * now + now * before + before * before) * far / (whole * far.min(now))
+    } else {
+        1.0
+    }
+}
+
+impl Levels {
+    /// Moves the groups by their tractions, and takes in what the step has done.
+    pub(super) fn commit_shear(&mut self, along: Demand, edge: f64, outcome: &Outcome) {
+        let Outcome { stick, ref met, share, sense, left } = *outcome;
+        let (compliance, level) = (self.history.rule().compliance(), self.level);
+        let Levels { history, groups, shear: Some(shear), .. } = self else { return };
+        let Some(now) = history.sheared() else { return };
+        let (before, stuck) = ([shear.force, shear.displacement()], shear.stick);
+        let (mut force, mut motion, mut lost, mut begun, mut from) = (0.0, 0.0, 0.0, 0.0, edge);
+        // of the levels above, ∫ θ dl and ∫ θ dδ: in the mean of the step, and while those below begin to slip
+        let mut above = [[0.0; 2]; 2];
+        for k in (0..groups.len()).rev() {
+            let ([width, depth], traction) = (widths(groups, k), shear.tractions[k]);
+            shear.trial[k] = if k < stick { now[k] } else { shear.trial[k] + compliance * traction };
+            // what is met has moved before it touched, and what is released moves after it touched
+            let slips = shear.whole || (stick..met.start).contains(&k);
+            let slipped = shear.whole || groups[k].top > stuck && sense * groups[k].shear > 0.0;
+            let mean = 0.5 * (groups[k].shear + traction);
+            let acts = if slips { [if slipped { mean } else { traction }; 2] } else { [mean, traction] };
+            // ∫ ΔU (κ(l′) − κ(l)) θ dl dl′ over l > l′ with κ = dδ/dl: what slips below a level slips there
+            if slips {
+                let inner = depth * width - 2.0 * inner_work(groups, k, width);
+                let [of_level, of_depth] = above[usize::from(!slipped)];
+                let change = shear.trial[k] - now[k];
+                let sum = if slipped { &mut lost } else { &mut begun };
+                *sum += change * (of_level * depth - of_depth * width + acts[0] * inner);
+            }
+            if slipped && !shear.whole {
+                from = stuck;
+            }
+            for (above, acts) in above.iter_mut().zip(acts) {
+                *above = [above[0] + acts * width, above[1] + acts * depth];
+            }
+            (force, motion) = (force + traction * width, motion + shear.trial[k] * depth);
+            groups[k].shear = traction;
+        }
+        if let Demand::Force(wanted) = along {
+            force = wanted;
+        } else {
+            shear.slid += left;
+        }
+        (shear.force, shear.motion) = (force, motion);
+        let mean = 0.5 * (before[0] + force);
+        shear.work += mean * (shear.displacement() - before[1]);
+        // it slides under what it carries then, not under what it carried while it stuck
+        let sliding = if stuck > 0.0 && !shear.whole { force } else { mean };
+        lost += if let Demand::Force(_) = along { 0.0 } else { sliding * left };
+        let bottom = stick.checked_sub(1).map_or(0.0, |k| groups[k].top);
+        shear.lost += lost + begun * travelled(level - bottom, edge - from, from - bottom);
+        let now = [shear.displacement(), force, shear.work];
+        shear.maxima.iter_mut().zip(now).for_each(|(most, now)| *most = most.max(now.abs()));
+        let stick = if share.abs() < 1.0 && stick == met.start { met.end } else { stick };
+        shear.stick = stick.checked_sub(1).map_or(0.0, |k| groups[k].top);
+    }
+
+    /// How far apart two outcomes of one step are along the surface: ∫ |δU| dδ, the most that their displacements can
+    /// ever differ by; the displacements; the forces; and what slip has dissipated.
+    pub(in crate::states) fn shear_distance(&self, other: &Levels) -> Option<[f64; 4]> {
+        let (one, two) = (self.shear.as_ref()?, other.shear.as_ref()?);
+        let (own, others) = (self.history.sheared()?, other.history.sheared()?);
+        let (mut far, mut k, mut lower) = (0.0, 0, 0.0);
+        for (group, now) in other.groups.iter().zip(others) {
+            loop {
+                let inside = self.groups.get(k).filter(|own| own.top < group.top);
+                let upper = inside.unwrap_or(group).motions.depth;
+                far += (now - own.get(k).copied().unwrap_or(0.0)).abs() * (upper - lower);
+                lower = upper;
+                if inside.is_none() {
+                    break;
+                }
+                k += 1;
+            }
+        }
+        let off = [one.displacement() - two.displacement(), one.force - two.force, one.lost - two.lost].map(f64::abs);
+        Some([far + (one.slid - two.slid).abs(), off[0], off[1], off[2]])
+    }
+
+    /// Continues the loss of a step in halves by so much of its difference to that of the whole: every step errs in the
+    /// same sense, and nothing brings back a loss.
+    pub(in crate::states) fn extrapolate_loss(&mut self, [before, whole]: [&Levels; 2], share: f64) {
+        if let (Some(shear), Some(before), Some(whole)) = (&mut self.shear, &before.shear, &whole.shear) {
+            shear.lost = f64::max(before.lost, shear.lost + share * (shear.lost - whole.lost));
+        }
+    }
+}
