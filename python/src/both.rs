@@ -1,4 +1,4 @@
-//! What contacts in space and on elastic states have in common: runs, copies, checkpoints, and pickles through them.
+//! What contacts have in common: runs, copies, checkpoints, and pickles through them.
 
 use pyo3::types::{PyList, PyType};
 
@@ -80,6 +80,27 @@ macro_rules! both {
                 Self::__copy__(slf, py)
             }
 
+            fn __traverse__(&self, visit: PyVisit<'_>) -> Traversed {
+                self.recipe.traverse(&visit)?;
+                self.held.traverse(&visit)
+            }
+
+            /// Ends the run, whose functions may refer to the contact.
+            fn __clear__(&mut self) {
+                let _ = self.held.free();
+            }
+        }
+    };
+}
+
+both!(ViscoelasticContact);
+both!(StatesContact);
+
+/// Checkpoints, and pickles through them, of a contact that is written in a step as `own`.
+macro_rules! saved {
+    ($contact:ident, $slf:ident => $own:expr) => {
+        #[pymethods]
+        impl $contact {
             /// Saves the whole state to a file, from which a contact that is built like this one continues by `resume`.
             fn save(slf: Shared<'_, Self>, py: Python<'_>, path: PathBuf) -> PyResult<()> {
                 let contact = slf.get()?;
@@ -89,8 +110,8 @@ macro_rules! both {
             /// Puts a saved state in the place of this one; the following steps are the same, bit by bit.
             ///
             /// Raises OSError if the file cannot be read, is damaged, or is of another scene.
-            fn resume(mut slf: Taken<'_, Self>, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-                let contact = slf.held.free()?;
+            fn resume(mut $slf: Taken<'_, Self>, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+                let contact = $own;
                 free(py, || contact.resume(path)).or_raise()
             }
 
@@ -102,23 +123,14 @@ macro_rules! both {
                 Ok((again, arguments, PyBytes::new(slf.py(), &bytes)))
             }
 
-            fn __traverse__(&self, visit: PyVisit<'_>) -> Traversed {
-                self.recipe.traverse(&visit)?;
-                self.held.traverse(&visit)
-            }
-
-            /// Ends the run, whose functions may refer to the contact.
-            fn __clear__(&mut self) {
-                let _ = self.held.free();
-            }
-
-            fn __setstate__(mut slf: Taken<'_, Self>, py: Python<'_>, state: &Bound<'_, PyBytes>) -> PyResult<()> {
-                let (bytes, contact) = (state.as_bytes(), slf.held.free()?);
+            fn __setstate__(mut $slf: Taken<'_, Self>, py: Python<'_>, state: &Bound<'_, PyBytes>) -> PyResult<()> {
+                let (bytes, contact) = (state.as_bytes(), $own);
                 free(py, || contact.resume_bytes(bytes)).or_raise()
             }
         }
     };
 }
 
-both!(ViscoelasticContact);
-both!(StatesContact);
+saved!(ViscoelasticContact, slf => slf.held.free()?);
+saved!(StatesContact, slf => slf.held.free()?);
+saved!(FrictionContact, slf => &mut slf.contact);

@@ -160,7 +160,7 @@ impl ShearLoad {
 /// Raises NotImplementedError of bodies whose response along the surface is not covered: it takes half-spaces, periodic bodies and line
 /// contacts of ν = ½ on a rigid body, or two bodies of one material.
 ///
-/// Copies go their own way: `copy.copy(contact)`. It cannot be pickled.
+/// Copies go their own way: `copy.copy(contact)`.
 ///
 /// >>> rubber = Material(Rheology.zener(1e6, 1e6, 1.0))
 /// >>> contact = FrictionContact(Grid(32, 4e-3), Shape.sphere(10e-3), rubber, 0.5)
@@ -175,8 +175,8 @@ impl ShearLoad {
 /// 0.3
 #[pyclass(module = "viscocontact")]
 pub struct FrictionContact {
-    contact: vf::FrictionContact,
-    recipe: Recipe,
+    pub contact: vf::FrictionContact,
+    pub recipe: Recipe,
     cancel: Arc<AtomicBool>,
     last: Duration,
 }
@@ -308,7 +308,7 @@ impl FrictionContact {
 }
 
 impl FrictionContact {
-    fn get(&self) -> PyResult<&vf::FrictionContact> {
+    pub fn get(&self) -> PyResult<&vf::FrictionContact> {
         Ok(&self.contact)
     }
 }

@@ -21,6 +21,7 @@ pub use crate::contact::ViscoelasticContact;
 pub use crate::elastic::ElasticContact;
 pub use crate::errors::{Kept, OrRaise, choice, in_python, no_violation, nothing_raised, raised_number, sure};
 pub use crate::fields::{Fields, Shown};
+pub use crate::friction::FrictionContact;
 pub use crate::grid::{Count, Grid, PerAxis, count};
 pub use crate::interrupt::{Listener, free, interruptible};
 pub use crate::kernels::{InfluenceKernel, axis};

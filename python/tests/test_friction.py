@@ -87,8 +87,22 @@ def test_fields_in_space():
     other = copy.copy(contact)
     other.step(1.0, vc.Load.force(1.0), vc.ShearLoad((0.3, 0.1), torque=1e-5))
     assert contact.time == 0.0 and other.motion[0] > contact.motion[0]
-    with pytest.raises(TypeError, match="pickle"):
-        pickle.dumps(contact)
+
+
+def test_saved_and_pickled(tmp_path):
+    contact = pressed()
+    contact.step(0.0, vc.Load.force(1.0), vc.ShearLoad((0.3, 0.1), torque=1e-5))
+    contact.save(tmp_path / "friction")
+    resumed = pressed()
+    resumed.resume(tmp_path / "friction")
+    others = [pickle.loads(pickle.dumps(contact)), copy.deepcopy(contact), resumed]
+    for one in [contact, *others]:
+        one.step(0.5, vc.Load.force(1.2), vc.ShearLoad((-0.2, 0.1), torque=0.0))
+    for other in others:
+        assert (other.traction == contact.traction).all() and (other.slip == contact.slip).all()
+        assert other.motion == contact.motion and other.work == contact.work and other.time == contact.time
+    with pytest.raises(OSError, match="friction"):
+        vc.FrictionContact(vc.Grid(48, 4e-3), BALL, RUBBER, 0.6).resume(tmp_path / "friction")
 
 
 def test_what_friction_cannot_carry_slides():
