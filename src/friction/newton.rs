@@ -25,6 +25,8 @@ pub(super) struct Work {
     /// Whether other cells slip than at the start of that step.
     changed: bool,
     secant: Option<Secant>,
+    /// Whether loads are met after a Newton step, too.
+    carries: bool,
     /// Of the search by motion: the drift, and where it comes from.
     pub(super) drift: Vec<f64>,
     pub(super) kept: Solution,
@@ -83,7 +85,10 @@ impl Solution {
         work: &mut Work,
     ) -> Outcome {
         self.begin(problem);
+        work.carries = true;
         let mut found = self.solve(problem, kernel, tolerance, work);
+        // where all cells near the limit would slip at once, loads are met by Newton steps alone
+        work.carries = false;
         let mut iterations = found.iterations;
         let goes_on = |found: Outcome| !found.is_solved && !problem.is_cancelled();
         if goes_on(found) {
@@ -177,7 +182,7 @@ impl Solution {
     /// Lets the tractions carry the loads again, as those under a rigid body that moves: what projections took away is
     /// given back without a convolution.
     fn carry(&mut self, problem: &Problem<'_>, work: &mut Work, least: f64) {
-        if !work.modes.are_known {
+        if !(work.carries && work.modes.are_known) {
             return;
         }
         for _ in 0..MOST_CARRIES {
