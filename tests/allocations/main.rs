@@ -18,7 +18,6 @@ static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 fn main() {
     steps::steps_allocate_nothing();
     steps::steps_on_states_allocate_nothing();
-    steps::steps_with_friction_allocate_nothing();
     println!("steps allocate nothing: ok");
     steps::tilting_steps_allocate_nothing();
     println!("tilting steps allocate nothing: ok");

@@ -3,7 +3,6 @@
 use crate::ALLOCATOR;
 use crate::common::{Draws, StepLoadedSphere, builder_of, sphere, sphere_on, zener};
 use stats_alloc::Region;
-use viscocontact::friction::{Coulomb, FrictionContact, Outcome, ShearLoad};
 use viscocontact::prelude::*;
 use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
 
@@ -104,43 +103,6 @@ pub fn steps_on_states_allocate_nothing() {
         // an adaptive run looks at its history before the first step
         run.next_step().unwrap();
         allocates_nothing(stepping, || while run.next_step().unwrap().is_some() {});
-    }
-}
-
-/// Steps with friction that stick and slip, in forces, motions and torques, once the rectangle has its size; loads that
-/// slide, too.
-pub fn steps_with_friction_allocate_nothing() {
-    let body = || Material::constant_poisson(Zener::with_time(1.0e6, 1.0e6, 1.0).unwrap(), 0.3).unwrap();
-    for periodic in [false, true] {
-        let grid = Grid::square(45, 4.0e-3).unwrap();
-        let mut builder = builder_of(&sphere(), grid.clone(), body().against(body()))
-            .settings(Settings::default().with_window(false).with_edge(Edge::Allow));
-        if periodic {
-            builder = builder.kernel(InfluenceKernel::periodic(&grid).unwrap());
-        }
-        let mut contact = FrictionContact::new(builder, Coulomb::new(0.5).unwrap()).unwrap();
-        let (mut held, mut slid) = (0, 0);
-        let mut step = |k: usize| {
-            let draws = |kind: u64| Draws::new(17 * k as u64 + kind).between(-1.0, 1.0);
-            let force = if k == 0 { 1.0 } else { 0.7 + 0.25 * draws(0) };
-            let along = [0.55 * force * draws(1), 0.3 * force * draws(2)];
-            let shear = match k % 3 {
-                0 => ShearLoad::force(along),
-                1 => ShearLoad::force(along).with_torque(1.0e-5 * draws(3)),
-                _ => ShearLoad::motion([1.0e-5 * draws(4), 1.0e-5 * draws(5)]),
-            };
-            contact.step(if k.is_multiple_of(4) { 0.0 } else { 0.1 }, Load::force(force), shear).unwrap()
-        };
-        (0..4).for_each(|k| drop(step(k)));
-        allocates_nothing(periodic, || {
-            for k in 4..60 {
-                match step(k) {
-                    Outcome::Holds(_) => held += 1,
-                    _ => slid += 1,
-                }
-            }
-        });
-        assert!(held > 30 && slid > 0, "{held} steps held, {slid} slid");
     }
 }
 
