@@ -138,7 +138,9 @@
 //!
 //! # Limitations
 //!
-//! Surfaces are frictionless except on elastic states and in a [`friction::FrictionContact`] ([`guide::friction`]); plasticity and finite deformation are outside the model; steps warn beyond small strains and slopes ([`guide::accuracy`]). With attraction
+//! Surfaces are frictionless except on elastic states and in a [`friction::FrictionContact`] ([`guide::friction`]);
+//! plasticity and finite deformation are outside the model; steps warn beyond small strains and slopes
+//! ([`guide::accuracy`]). With attraction
 //! there is one body on the whole grid ([`guide::adhesion`]). In time a [`Layer`] lies on a rigid base, or on one with the same creep function; bodies of several
 //! layers need a spectrum or influence coefficients ([`InfluenceKernel::from_spectrum`]).
 

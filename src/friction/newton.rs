@@ -160,7 +160,8 @@ impl Solution {
         outcome
     }
 
-    /// Changes the tractions by the step found last: what leaves its circle slips. Returns whether other cells began to.
+    /// Changes the tractions by the step found last: what leaves its circle slips. Returns whether other cells began
+    /// to.
     fn move_by(&mut self, problem: &Problem<'_>, work: &mut Work) -> bool {
         let (n, step, mut any) = (problem.cells(), &work.step, false);
         for i in problem.touching() {

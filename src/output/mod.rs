@@ -10,7 +10,8 @@
 //! | `write_states`, `read_states`: elastic states as an NPZ archive | `npy` | NumPy, Julia, MATLAB |
 //! | `CsvHistory`: one row per step | – | pandas, spreadsheets, gnuplot |
 //!
-//! Values are written in double precision, bitwise, in SI units. Each file contains [`Metadata`] that describe the run; those of a history are beside it.
+//! Values are written in double precision, bitwise, in SI units. Each file contains [`Metadata`] that describe the
+//! run; those of a history are beside it.
 //! You choose which [`Field`]s are written. A frame is complete on disk when its `record` returns: if a run is killed,
 //! all earlier frames are readable.
 //!

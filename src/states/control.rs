@@ -203,7 +203,8 @@ impl Judge<StatesContact> for OnLevels {
             let (pressed, [far, most, done]) = (along.max(pressed), shear.maxima.map(|most| SMALL * most));
             let scales = [shear.displacement().abs().max(far * along), shear.force.abs().max(most * pressed)];
             see([off[0], off[2]], scales);
-            // of no certain order where edges move in the step: the halves err by no more than they differ from the whole
+            // of no certain order where edges move in the step: the halves err by no more than they differ from the
+            // whole
             see([off[3] / OF_HALVES, 0.0], [shear.lost.max(done.max(far * most / SMALL) * along * pressed), 0.0]);
             // levels that stick keep what a step has moved them by
             let time = end - record.corner;

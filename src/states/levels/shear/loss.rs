@@ -7,14 +7,14 @@ use crate::states::levels::{Demand, Levels};
 /// that slips is `now` so wide, was `before`, and its inner end went so far in the step; each level that it passes loses
 /// about the square of its width then.
 fn travelled(now: f64, before: f64, far: f64) -> f64 {
-    let rest = (now - far).max(0.0);
-    let whole = now * now + now * rest + rest * rest;
     // what hardly slips at the end is rounding, and tells nothing of the zone before
-    if far > 0.0 && now > 0.1 * (before + far) {
-        (now * now + now * before + before * before) * far / (whole * far.min(now))
-    } else {
-        1.0
+    if far <= 0.0 || now <= 0.1 * (before + far) {
+        return 1.0;
     }
+    // over the zone at the end: squares of lengths may be beyond f64
+    let (before, far) = (before / now, far / now);
+    let rest = (1.0 - far).max(0.0);
+    (1.0 + before + before * before) * far / ((1.0 + rest + rest * rest) * far.min(1.0))
 }
 
 impl Levels {
