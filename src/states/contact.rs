@@ -32,7 +32,6 @@ pub struct StatesContact {
     /// The approach of the load point that the last step prescribed \[m\].
     pub(super) prescribed: Option<f64>,
     /// The run that saved this state, for the next run to go on with.
-    #[cfg(feature = "checkpoint")]
     pub(super) saved_run: Option<Arc<dyn std::any::Any + Send + Sync>>,
 }
 
@@ -80,7 +79,6 @@ impl StatesContact {
             reduced_time: 0.0,
             undisturbed_until: 0.0,
             prescribed: None,
-            #[cfg(feature = "checkpoint")]
             saved_run: None,
         })
     }
