@@ -1,7 +1,6 @@
 //! Fourier transforms of planes, for surfaces and for the stress below them. The convolution of a contact has
 //! padded and folded transforms that ranks share, in [`kernel`](crate::kernel).
 
-use std::cell::RefCell;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -41,17 +40,8 @@ impl Lines {
     }
 
     fn process(&self, plan: &Arc<dyn Fft<f64>>, lines: &mut [Complex64]) {
-        thread_local! {
-            static SCRATCH: RefCell<Vec<Complex64>> = const { RefCell::new(Vec::new()) };
-        }
         if self.len() > 1 {
-            let needed = plan.get_inplace_scratch_len();
-            for_each_line_share(lines, self.len(), &|_, share| {
-                SCRATCH.with_borrow_mut(|scratch| {
-                    scratch.resize(needed.max(scratch.len()), Complex64::ZERO);
-                    plan.process_with_scratch(share, &mut scratch[..needed]);
-                });
-            });
+            for_each_line_share(lines, self.len(), &|_, share| plan.process(share));
         }
     }
 }

@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use crate::contact::{Builder, Snapshot, Step, StepError, StepReport, TimeRule, ViscoelasticContact};
 use crate::equilibrium::constraints::validate_loads;
-use crate::error::{Error, FrictionError, Result, Special, UserError, non_negative};
+use crate::error::{Error, FrictionError, Result, Special, UserError};
 use crate::friction::history::ShearHistory;
 use crate::friction::kernel::{TangentialKernel, TangentialResponse};
 use crate::friction::limit::FrictionLimit;
@@ -15,7 +15,7 @@ use crate::friction::problem::{Cell, Problem, Solution, take_motion};
 use crate::friction::region::extent;
 use crate::friction::report::{FrictionReport, Outcome};
 use crate::friction::state::State;
-use crate::hereditary::{Interpolant, StepContext};
+use crate::hereditary::Interpolant;
 use crate::load::Load;
 use crate::run::doubled::SavedRun;
 use crate::run::doubled::plain::Plain;
@@ -142,15 +142,14 @@ impl FrictionContact {
         tolerance: f64,
     ) -> Result<Outcome> {
         shear.validate()?;
-        non_negative("time step", dt)?;
         let normal = &mut self.normal;
         normal.snapshot_into(&mut self.start);
         normal.fields().gap_into(&mut self.step.gap)?;
         let loads = [load];
-        let step = Step { cancelled: Some(cancelled), ..normal.request(normal.time() + dt, dt, &loads, tolerance)? };
+        let step = Step { cancelled: Some(cancelled), tolerance, ..normal.request_next(dt, &loads)? };
         validate_loads(&normal.scene.ground, step.request())?;
         let length = step.interval.dt;
-        let (report, _) = normal.take_expecting(step, &StepContext::default())?;
+        let report = normal.take(step)?;
         let outcome = self.shear_to(cancelled, length, shear, report, tolerance);
         if !matches!(outcome, Ok(Outcome::Holds(_))) {
             self.normal.restore(&self.start)?;

@@ -6,7 +6,7 @@ use crate::contact::StepReport;
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 #[must_use = "a contact that slides has not taken the step"]
-#[allow(clippy::large_enum_variant)] // a step allocates nothing
+#[allow(clippy::large_enum_variant)] // a box would be an allocation for each step that holds
 pub enum Outcome {
     /// Friction carries the load.
     Holds(FrictionReport),

@@ -114,7 +114,7 @@ impl ViscoelasticContact {
     }
 
     /// The next step of length `dt`, to the tolerance of the settings.
-    pub(in crate::contact) fn request_next<'a>(&self, dt: f64, loads: &'a [Load]) -> Result<Step<'a>> {
+    pub(crate) fn request_next<'a>(&self, dt: f64, loads: &'a [Load]) -> Result<Step<'a>> {
         non_negative("time step", dt)?;
         self.request(self.time() + dt, dt, loads, self.settings().tolerance)
     }
@@ -131,7 +131,7 @@ impl ViscoelasticContact {
     }
 
     /// Computes a step and accepts it.
-    pub(in crate::contact) fn take(&mut self, step: Step<'_>) -> Result<StepReport> {
+    pub(crate) fn take(&mut self, step: Step<'_>) -> Result<StepReport> {
         Ok(self.take_expecting(step, &StepContext::default())?.0)
     }
 
