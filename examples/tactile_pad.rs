@@ -97,13 +97,13 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     );
     chart.add("sticks", COLORS[0], Style::LineAndDots, sticking);
     chart.save(args.output.join("sticks.png"))?;
-    let [work, slip] = contact.work();
+    let work = contact.lateral_work();
     println!(
         "shifted by {:.1} µm and turned by {:.2}°; {:.2} µJ of work along the surface, {:.2} µJ lost by slip",
         1e6 * contact.motion()[0],
         contact.motion()[2].to_degrees(),
-        1e6 * work,
-        1e6 * slip
+        1e6 * work.work,
+        1e6 * work.slip
     );
     println!("table and pictures are in {}", args.output.display());
     Ok(())

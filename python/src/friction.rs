@@ -270,11 +270,11 @@ impl FrictionContact {
         slf.contact.sticks().into_pyarray(py).reshape(slf.contact.normal().grid().cells())
     }
 
-    /// Since the contact was made [J]: the "work" done along the surface, and what "slip" has dissipated of it.
+    /// Where the work along the surface went since the contact was made [J]: "work" = "slip" + "stored" + "creep".
     #[getter]
-    fn work<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let [work, slip] = slf.contact.work();
-        Ok(dict! { py; "work": work, "slip": slip })
+    fn lateral_work<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let of = free(py, || slf.contact.lateral_work());
+        Ok(dict! { py; of { work, slip, stored, creep } })
     }
 
     fn __copy__(slf: Shared<'_, Self>, py: Python<'_>) -> FrictionContact {

@@ -91,7 +91,9 @@ fn friction(draw: &mut Draw) -> Bits {
             Outcome::Holds(report) => all.extend([report.residual, report.convolution_equivalents]),
             _ => {}
         }
-        all.extend(contact.motion().iter().chain(&contact.force()).chain(&contact.work()));
+        let of = contact.lateral_work();
+        let work = [of.work, of.slip, of.stored, of.creep];
+        all.extend(contact.motion().iter().chain(&contact.force()).chain(&work));
         all.extend([contact.traction(), contact.slip()].iter().flatten().flatten());
         all.extend(contact.sticks().iter().map(|sticks| f64::from(u8::from(*sticks))));
         all.extend(contact.normal().pressure());

@@ -83,7 +83,8 @@ def test_fields_in_space():
     assert (np.hypot(*traction) <= 0.5 * normal.pressure * (1 + 1e-9)).all()
     assert contact.sticks.sum() == contact.stick_cells and 0 < contact.stick_cells < normal.contact_cells
     assert np.hypot(*contact.slip)[contact.sticks].max() <= 1e-6 * max(map(abs, contact.motion[:2])) * 10
-    assert contact.work["work"] > contact.work["slip"] > 0
+    work = contact.lateral_work
+    assert work["work"] == pytest.approx(work["slip"] + work["stored"] + work["creep"], rel=1e-12) and work["stored"] > work["slip"] > 0
     other = copy.copy(contact)
     other.step(1.0, vc.Load.force(1.0), vc.ShearLoad((0.3, 0.1), torque=1e-5))
     assert contact.time == 0.0 and other.motion[0] > contact.motion[0]
@@ -100,7 +101,7 @@ def test_saved_and_pickled(tmp_path):
         one.step(0.5, vc.Load.force(1.2), vc.ShearLoad((-0.2, 0.1), torque=0.0))
     for other in others:
         assert (other.traction == contact.traction).all() and (other.slip == contact.slip).all()
-        assert other.motion == contact.motion and other.work == contact.work and other.time == contact.time
+        assert other.motion == contact.motion and other.lateral_work == contact.lateral_work and other.time == contact.time
     with pytest.raises(OSError, match="friction"):
         vc.FrictionContact(vc.Grid(48, 4e-3), BALL, RUBBER, 0.6).resume(tmp_path / "friction")
 

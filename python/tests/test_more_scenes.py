@@ -51,7 +51,7 @@ def friction(draw):
             parts.append([report["residual"], report["convolutions"]])
         except vc.Slides as slides:
             parts.append([*slides.direction, slides.over_limit])
-        parts += [contact.motion, [*contact.lateral_force, contact.torque], [contact.work["work"], contact.work["slip"]], contact.traction, contact.slip]
+        parts += [contact.motion, [*contact.lateral_force, contact.torque], list(contact.lateral_work.values()), contact.traction, contact.slip]
         parts += [contact.sticks.astype(float), contact.normal.pressure]
     return parts
 

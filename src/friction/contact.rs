@@ -17,6 +17,7 @@ use crate::friction::report::{FrictionReport, Outcome};
 use crate::friction::state::State;
 use crate::hereditary::Interpolant;
 use crate::load::Load;
+use crate::load::lateral_work::LateralWork;
 use crate::run::doubled::SavedRun;
 use crate::run::doubled::plain::Plain;
 
@@ -212,12 +213,15 @@ impl FrictionContact {
         }
         let mut change = given;
         problem.driven().for_each(|k| change[k] = trial.motion[k]);
-        let before = state.force;
         for k in 0..3 {
             motion[k] = if let Component::Motion(to) = shear.components[k] { to } else { motion[k] + change[k] };
             state.force[k] = area * problem.carried(k, &trial.traction);
-            state.work[0] += 0.5 * (before[k] + state.force[k]) * change[k];
         }
+        // what parts slips as its traction falls
+        let parting = (0..cells).filter(|&i| bound[i] == 0.0 && solution.cells[i] != Cell::Apart);
+        problem.gradient(parting, &work.stress, trial.motion, &mut trial.gradient);
+        let works = problem.works(solution, trial, change);
+        state.work.iter_mut().zip(works).for_each(|(work, of_step)| *work += area * of_step);
         state.load_share = 1.0 / factor;
         // what friction could cause
         let (carried, count) = (problem.reach(0), problem.touching().count().max(1) as f64);
@@ -227,8 +231,6 @@ impl FrictionContact {
         for k in 0..2 {
             state.largest[k] = state.largest[k].max(now[k]).max(NEGLIGIBLE * could[k]);
         }
-        let mean = trial.traction.iter().zip(&solution.traction).zip(&trial.gradient);
-        state.work[1] -= area * mean.map(|((now, before), g)| 0.5 * (now + before) * g).sum::<f64>();
         free.iter_mut().zip(&trial.traction).for_each(|(u, traction)| *u += compliance * traction);
         history.commit(free, &[]);
         std::mem::swap(solution, trial);
@@ -307,9 +309,24 @@ impl FrictionContact {
         self.state.force
     }
 
-    /// The work done along the surface, and the part of it that slip has dissipated \[J\].
-    pub fn work(&self) -> [f64; 2] {
-        self.state.work
+    /// Where the work along the surface went. What the bodies store takes a convolution for each of their springs.
+    pub fn lateral_work(&self) -> LateralWork {
+        let [work, slip] = self.state.work;
+        LateralWork::new(work, slip, self.stored())
+    }
+
+    /// ½ Σ E∞ U K U + ½ Σ q_i K q_i/E_i over the springs of the bodies.
+    fn stored(&self) -> f64 {
+        let (history, mut operator) = (&self.state.history, self.kernel.operator.clone());
+        let springs = history.stresses().map(|(modulus, stress)| (modulus.recip(), stress));
+        let mut displaced = vec![0.0; 2 * self.state.region.len()];
+        let mut energy = |(factor, field): (f64, &[f64])| {
+            operator.apply(field, &mut displaced);
+            0.5 * factor * field.iter().zip(&displaced).map(|(one, two)| one * two).sum::<f64>()
+        };
+        let all = springs.chain([(history.rule().equilibrium(), history.displacements())]);
+        self.normal.grid().cell_area()
+            * all.filter(|(factor, field)| *factor > 0.0 && !field.is_empty()).map(&mut energy).sum::<f64>()
     }
 
     /// The part of what friction can carry that the forces prescribed in the last step take: the body slides beyond 1.

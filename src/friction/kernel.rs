@@ -113,7 +113,7 @@ impl TangentialResponse {
 /// K on a rectangle of cells, and an approximate inverse of it.
 #[derive(Debug, Clone)]
 pub(super) struct TangentialKernel {
-    operator: Operator,
+    pub(super) operator: Operator,
     preconditioner: Preconditioner,
     /// Axes along which the body ends.
     ends: [bool; 2],

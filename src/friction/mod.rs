@@ -38,3 +38,4 @@ pub use report::{FrictionReport, Outcome};
 pub use snapshot::FrictionSnapshot;
 
 pub use crate::error::FrictionError;
+pub use crate::load::lateral_work::LateralWork;

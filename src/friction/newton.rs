@@ -9,7 +9,7 @@ use crate::linalg;
 /// Buffers of the solver.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Work {
-    stress: Vec<f64>,
+    pub(super) stress: Vec<f64>,
     normals: Vec<[f64; 2]>,
     /// max(−g·n, 0)/r where cells slip: the curvature of the circle.
     curvature: Vec<f64>,
@@ -128,7 +128,7 @@ impl Solution {
             if iteration == 0 {
                 self.motion = problem.fitting_motion(self, &work.stress);
             }
-            problem.gradient(&work.stress, self.motion, &mut self.gradient);
+            problem.gradient(problem.touching(), &work.stress, self.motion, &mut self.gradient);
             let stress = problem.touching().map(|i| work.stress[i].abs().max(work.stress[n + i].abs()));
             let scale = (problem.compliance * stress.fold(0.0, f64::max)).max(drift).max(least).max(f64::MIN_POSITIVE);
             let gaps = problem.gaps(&self.traction);

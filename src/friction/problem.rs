@@ -83,13 +83,30 @@ impl Problem<'_> {
         self.driven().map(|k| gaps[k].abs() / self.size(k)).fold(0.0, f64::max)
     }
 
-    /// g from c K τ.
-    pub(super) fn gradient(&self, stress: &[f64], motion: [f64; 3], out: &mut [f64]) {
+    /// g of some cells from c K τ.
+    pub(super) fn gradient(
+        &self,
+        cells: impl Iterator<Item = usize>,
+        stress: &[f64],
+        motion: [f64; 3],
+        out: &mut [f64],
+    ) {
         let n = self.cells();
-        for i in self.touching() {
+        for i in cells {
             [i, n + i].into_iter().for_each(|at| out[at] = self.compliance * stress[at] + self.drift[at]);
+            take_motion(out, [i], self.entered, self.places, motion);
         }
-        take_motion(out, self.touching(), self.entered, self.places, motion);
+    }
+
+    /// ½ Σ (τ_before + τ)·a B Δd, the work of a motion, and −½ Σ (τ_before + τ)·g, what slip dissipates of it; the rest
+    /// is ½ Σ (τ_before + τ)·Δu, which the bodies take up. Without slip both are exact, also as contacts grow.
+    pub(super) fn works(&self, before: &Solution, now: &Solution, motion: [f64; 3]) -> [f64; 2] {
+        let n = self.cells();
+        (0..n).fold([0.0; 2], |[work, slip], i| {
+            let mean = [0, 1].map(|axis| 0.5 * (before.of(i)[axis] + now.of(i)[axis]));
+            let moved = (0..3).map(|k| motion[k] * dot(self.mode(k, i), mean)).sum::<f64>();
+            [work + self.entered[i] * moved, slip - dot([now.gradient[i], now.gradient[n + i]], mean)]
+        })
     }
 
     /// The scale of what may be missing of a load: forces against what friction can carry, torques against its part.
@@ -101,7 +118,7 @@ impl Problem<'_> {
 /// Takes a B d out of a displacement of some cells.
 pub(super) fn take_motion(
     field: &mut [f64],
-    cells: impl Iterator<Item = usize>,
+    cells: impl IntoIterator<Item = usize>,
     entered: &[f64],
     places: &[[f64; 2]],
     motion: [f64; 3],

@@ -122,7 +122,7 @@ impl Contact for FrictionContact {
     }
 
     fn columns(&self) -> Vec<(&'static str, f64)> {
-        let (motion, force, [work, slip]) = (self.motion(), FrictionContact::force(self), self.work());
+        let (motion, force, [work, slip]) = (self.motion(), FrictionContact::force(self), self.state.work);
         vec![
             ("force along 1 [N]", force[0]),
             ("force along 2 [N]", force[1]),

@@ -224,9 +224,18 @@ impl GroupHistory {
         self.tangential.as_ref().map(|past| &past.columns[0][..])
     }
 
-    /// The modulus of each relaxation time, the longest first, and the stress of each group along the surface.
+    /// The modulus of each relaxation time, the longest first, and the stress of each group.
+    pub(crate) fn stresses(&self) -> impl Iterator<Item = (f64, &[f64])> {
+        self.stresses_of(Some(&self.normal))
+    }
+
+    /// The same along the surface.
     pub(crate) fn shear_stresses(&self) -> impl Iterator<Item = (f64, &[f64])> {
-        let stresses = self.tangential.iter().flat_map(|past| past.columns[HEAD..].iter().rev());
+        self.stresses_of(self.tangential.as_ref())
+    }
+
+    fn stresses_of<'a>(&'a self, past: Option<&'a Past>) -> impl Iterator<Item = (f64, &'a [f64])> {
+        let stresses = past.into_iter().flat_map(|past| past.columns[HEAD..].iter().rev());
         self.rule.influences().map(|(modulus, _)| modulus).zip(stresses.map(Vec::as_slice))
     }
 

@@ -15,6 +15,8 @@
 mod effect;
 mod function;
 mod history;
+#[cfg(feature = "contacts")]
+pub(crate) mod lateral_work;
 #[cfg(feature = "laws")]
 pub mod laws;
 mod periodic;

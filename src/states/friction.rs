@@ -6,25 +6,12 @@ use crate::contact::StepReport;
 use crate::error::{Result, StatesError, within};
 use crate::hereditary::Interpolant;
 use crate::kernel::HalfSpace;
+use crate::load::lateral_work::LateralWork;
 use crate::load::{Load, LoadHistory};
 use crate::rheology::Material;
 use crate::states::contact::StatesContact;
 use crate::states::coulomb::Friction;
 use crate::states::levels::{Demand, Shear};
-
-/// Where the work along the surface went, since the contact was made \[J\]: work = slip + stored + creep.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-#[non_exhaustive]
-pub struct LateralWork {
-    /// ∫ Q dd, done on the bodies by the force along the surface.
-    pub work: f64,
-    /// Dissipated by slip in the contact.
-    pub slip: f64,
-    /// Stored in the bodies, to come back.
-    pub stored: f64,
-    /// Dissipated by creep in the bodies.
-    pub creep: f64,
-}
 
 /// # Friction
 ///
@@ -221,8 +208,7 @@ impl StatesContact {
     pub fn lateral_work(&self) -> LateralWork {
         let found = self.sheared(|friction, shear| {
             let unit = friction.coefficient * friction.of_displacement();
-            let [work, slip, stored] = [shear.work, shear.lost, self.levels.stored_along()].map(|part| unit * part);
-            LateralWork { work, slip, stored, creep: work - slip - stored }
+            LateralWork::new(unit * shear.work, unit * shear.lost, unit * self.levels.stored_along())
         });
         found.unwrap_or_default()
     }

@@ -67,9 +67,9 @@ mod superposed;
 mod sweep;
 
 pub use crate::error::StatesError;
+pub use crate::load::lateral_work::LateralWork;
 pub use contact::StatesContact;
 pub use curve::{ElasticState, ElasticStates};
-pub use friction::LateralWork;
 #[cfg(feature = "npy")]
 pub(crate) use pressed::Pressed;
 pub use reach::Reach;

@@ -6,6 +6,7 @@ mod gradients;
 pub(crate) mod kept;
 mod runs;
 mod space;
+mod space_energies;
 mod space_known;
 mod space_runs;
 mod space_saved;

@@ -59,7 +59,7 @@ fn course(seed: u64, tolerance: f64) -> (Vec<Seen>, u64) {
         for sample in run.samples().map(Result::unwrap).filter(|sample| sample.is_asked_for()) {
             let contact = sample.contact();
             let (arm, [m1, m2, m3], [q1, q2, q3]) = (contact.contact_area().sqrt(), contact.motion(), contact.force());
-            seen.push(([m1, m2, arm * m3], [q1, q2, q3 / arm], contact.work()[1]));
+            seen.push(([m1, m2, arm * m3], [q1, q2, q3 / arm], contact.lateral_work().slip));
         }
     }
     (seen, run.progress().steps)

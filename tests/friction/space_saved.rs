@@ -18,7 +18,7 @@ use crate::common::sealed::seal;
 fn seen(contact: &FrictionContact) -> String {
     let normal = contact.normal();
     let fields = [contact.traction(), contact.slip()];
-    let numbers = (contact.motion(), contact.force(), contact.sticks(), contact.work(), contact.load_share());
+    let numbers = (contact.motion(), contact.force(), contact.sticks(), contact.lateral_work(), contact.load_share());
     let pressed = (normal.time(), normal.approach(), normal.pressure(), normal.fields().displacement());
     // f64 prints as many digits as tell it from all others
     format!("{fields:?} {numbers:?} {pressed:?}")

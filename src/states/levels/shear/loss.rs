@@ -72,6 +72,22 @@ impl Levels {
         shear.stick = stick.checked_sub(1).map_or(0.0, |k| groups[k].top);
     }
 
+    /// Of what acts along the surface: the work so far, and what of it is stored or lost by slip.
+    pub(in crate::states::levels) fn work_along(&self) -> [f64; 2] {
+        let Some(shear) = &self.shear else { return [0.0; 2] };
+        [shear.work, self.stored_along() + shear.lost]
+    }
+
+    /// In a step of no time bodies answer elastically: its work is what they store and lose by slip, also where contacts
+    /// grow or shrink in it, so that the force is no line in the displacement.
+    pub(in crate::states::levels) fn work_at_once(&mut self, [work, taken]: [f64; 2]) {
+        let [_, now] = self.work_along();
+        if let Some(shear) = &mut self.shear {
+            shear.work = work + now - taken;
+            shear.maxima[2] = shear.maxima[2].max(shear.work.abs());
+        }
+    }
+
     /// How far apart two outcomes of one step are along the surface: ∫ |δU| dδ, the most that their displacements can
     /// ever differ by; the displacements; the forces; and what slip has dissipated.
     pub(in crate::states) fn shear_distance(&self, other: &Levels) -> Option<[f64; 4]> {

@@ -1,0 +1,130 @@
+//! Where the work along the surface goes, against the springs and dashpots of a dense body.
+
+use viscocontact::friction::{Coulomb, FrictionContact, Outcome, ShearLoad};
+use viscocontact::prelude::*;
+
+use super::dense::relaxation;
+use super::space::{half_space, pair, periodic};
+
+const N: usize = 12;
+const STEPS: [u32; 3] = [32, 64, 128];
+
+/// τ K τ′ of tractions whose components follow each other.
+type Form = Box<dyn Fn(&[f64], &[f64]) -> f64>;
+
+/// A spring E∞ beside a spring E1 in series with a dashpot E1 τ, in each cell: they carry E∞ U and q of the tractions.
+struct Maxwell {
+    form: Form,
+    moduli: [f64; 2],
+    time: f64,
+    displacement: Vec<f64>,
+    stress: Vec<f64>,
+    dissipated: f64,
+}
+
+impl Maxwell {
+    fn stored(&self) -> f64 {
+        let Maxwell { form, moduli, displacement, stress, .. } = self;
+        0.5 * (moduli[0] * form(displacement, displacement) + form(stress, stress) / moduli[1])
+    }
+
+    /// To these tractions, with U linear in time: q′ = E1 U′ − q/τ has q = a + b exp(−s/τ), whose square is integrated.
+    fn step(&mut self, dt: f64, traction: &[f64]) {
+        let Maxwell { form, moduli: [rest, more], time, displacement, stress, dissipated } = self;
+        let (time, decay) = (*time, (-dt / *time).exp());
+        let answer = if dt > 0.0 { *more * time * (1.0 - decay) / dt } else { *more };
+        let (mut a, mut b) = (vec![0.0; stress.len()], vec![0.0; stress.len()]);
+        for (k, now) in traction.iter().enumerate() {
+            let change = (now - *rest * displacement[k] - decay * stress[k]) / (*rest + answer);
+            displacement[k] += change;
+            if dt > 0.0 {
+                a[k] = *more * time * change / dt;
+                b[k] = stress[k] - a[k];
+            }
+            stress[k] = decay * stress[k] + answer * change;
+        }
+        let integrals = [dt, 2.0 * time * (1.0 - decay), 0.5 * time * (1.0 - decay * decay)];
+        let squares = [form(&a, &a), form(&a, &b), form(&b, &b)];
+        *dissipated += integrals.iter().zip(squares).map(|(of, square)| of * square).sum::<f64>() / (*more * time);
+    }
+}
+
+/// A ball on a body of one relaxation time, pressed at once, then sheared and turned for so many steps. Work, loss by slip, creep and what the
+/// balance with the dashpots leaves.
+fn balance(is_periodic: bool, is_pressed: bool, steps: u32) -> [f64; 4] {
+    let (nu, side, relaxation) = (0.3, 1.0 / N as f64, relaxation(0));
+    let grid = Grid::square(N, 1.0).unwrap();
+    let shape = FnGeometry::new(|x, y| 0.5 * (x * x + y * y));
+    let settings = Settings::default().with_tolerance(1e-12).with_edge(Edge::Allow);
+    let mut scene =
+        ViscoelasticContact::builder(grid.clone()).geometry(&shape).material(pair(&relaxation, nu)).settings(settings);
+    if is_periodic {
+        scene = scene.kernel(InfluenceKernel::periodic(&grid).unwrap());
+    }
+    let mut contact = FrictionContact::new(scene, Coulomb::new(0.5).unwrap()).unwrap();
+    let influence = if is_periodic { periodic(N, side, nu) } else { half_space(side, nu) };
+    let dense: Vec<[f64; 3]> = (0..N * N * N * N)
+        .map(|k| {
+            let [i, j] = [k / (N * N), k % (N * N)];
+            influence(
+                [i / N, i % N]
+                    .into_iter()
+                    .zip([j / N, j % N])
+                    .map(|(i, j)| i as isize - j as isize)
+                    .collect::<Vec<_>>()
+                    .try_into()
+                    .unwrap(),
+            )
+        })
+        .collect();
+    let form = move |one: &[f64], two: &[f64]| {
+        let n = N * N;
+        let at = |i: usize, j: usize| {
+            let [xx, yy, xy] = dense[i * n + j];
+            one[i] * (xx * two[j] + xy * two[n + j]) + one[n + i] * (xy * two[j] + yy * two[n + j])
+        };
+        side * side * (0..n).flat_map(|i| (0..n).map(move |j| (i, j))).map(|(i, j)| at(i, j)).sum::<f64>()
+    };
+    let n = 2 * N * N;
+    let (terms, zero) = (relaxation.terms[0], || vec![0.0; n]);
+    let moduli = [relaxation.equilibrium, terms.0];
+    let mut body =
+        Maxwell { form: Box::new(form), moduli, time: terms.1, displacement: zero(), stress: zero(), dissipated: 0.0 };
+    let force = 0.05;
+    let pressed = |t: f64| if is_pressed { Load::force(force * (1.0 + 0.2 * t)) } else { Load::approach(0.06) };
+    let (dt, mut largest) = (4.0 / f64::from(steps), 0.0f64);
+    for step in 0..=steps {
+        let t = f64::from(step) * dt;
+        // a relaxing contact carries less and less
+        let carried = if is_pressed { force } else { 0.4 * force * (0.3 + 0.7 * (-t).exp()) };
+        let [q1, q2] = [0.8 * (1.5 * t + 0.2).sin(), 0.3 * (3.0 * t).sin()].map(|part| 0.35 * carried * part);
+        let outcome = contact.step(
+            if step == 0 { 0.0 } else { dt },
+            pressed(t),
+            ShearLoad::force([q1, q2]).with_torque(0.1 * q1),
+        );
+        assert!(matches!(outcome.unwrap(), Outcome::Holds(_)), "{step}");
+        body.step(if step == 0 { 0.0 } else { dt }, &contact.traction().concat());
+        let work = contact.lateral_work();
+        largest = largest.max(work.stored);
+        assert!((work.stored - body.stored()).abs() < 1e-9 * largest, "{step}: {} {}", work.stored, body.stored());
+        assert_eq!(work.work - work.slip - work.stored, work.creep);
+    }
+    let work = contact.lateral_work();
+    [work.work, work.slip, work.creep, work.creep - body.dissipated]
+}
+
+#[test]
+fn work_is_stored_or_lost_by_slip_and_by_creep() {
+    for (is_periodic, is_pressed) in [(false, false), (false, true), (true, false), (true, true)] {
+        let found = STEPS.map(|steps| balance(is_periodic, is_pressed, steps));
+        for ([work, slip, creep, off], steps) in found.iter().zip(STEPS) {
+            println!("{is_periodic} {is_pressed} {steps}: {work:.4e} {slip:.3e} {creep:.3e} {:.2e}", off / work);
+            assert!(*slip > 0.02 * work && *creep > 0.3 * work && off.abs() < 8.0 * work / f64::from(steps * steps));
+        }
+        for pair in found.windows(2) {
+            let ratio = pair[0][3] / pair[1][3];
+            assert!((3.6..4.4).contains(&ratio), "{is_periodic} {is_pressed}: {ratio}");
+        }
+    }
+}
