@@ -49,8 +49,8 @@ impl Maxwell {
     }
 }
 
-/// A ball on a body of one relaxation time, pressed at once, then sheared and turned for so many steps. Work, loss by slip, creep and what the
-/// balance with the dashpots leaves.
+/// A ball on a body of one relaxation time, pressed and sheared at once, then sheared and turned in so many steps: work,
+/// loss by slip, creep, and what it has beyond that of the dashpots.
 fn balance(is_periodic: bool, is_pressed: bool, steps: u32) -> [f64; 4] {
     let (nu, side, relaxation) = (0.3, 1.0 / N as f64, relaxation(0));
     let grid = Grid::square(N, 1.0).unwrap();
@@ -63,30 +63,17 @@ fn balance(is_periodic: bool, is_pressed: bool, steps: u32) -> [f64; 4] {
     }
     let mut contact = FrictionContact::new(scene, Coulomb::new(0.5).unwrap()).unwrap();
     let influence = if is_periodic { periodic(N, side, nu) } else { half_space(side, nu) };
-    let dense: Vec<[f64; 3]> = (0..N * N * N * N)
-        .map(|k| {
-            let [i, j] = [k / (N * N), k % (N * N)];
-            influence(
-                [i / N, i % N]
-                    .into_iter()
-                    .zip([j / N, j % N])
-                    .map(|(i, j)| i as isize - j as isize)
-                    .collect::<Vec<_>>()
-                    .try_into()
-                    .unwrap(),
-            )
-        })
-        .collect();
+    let n = N * N;
+    let apart = |i: usize, j: usize| [(i / N) as isize - (j / N) as isize, (i % N) as isize - (j % N) as isize];
+    let dense: Vec<[f64; 3]> = (0..n * n).map(|k| influence(apart(k / n, k % n))).collect();
     let form = move |one: &[f64], two: &[f64]| {
-        let n = N * N;
         let at = |i: usize, j: usize| {
             let [xx, yy, xy] = dense[i * n + j];
             one[i] * (xx * two[j] + xy * two[n + j]) + one[n + i] * (xy * two[j] + yy * two[n + j])
         };
         side * side * (0..n).flat_map(|i| (0..n).map(move |j| (i, j))).map(|(i, j)| at(i, j)).sum::<f64>()
     };
-    let n = 2 * N * N;
-    let (terms, zero) = (relaxation.terms[0], || vec![0.0; n]);
+    let (terms, zero) = (relaxation.terms[0], || vec![0.0; 2 * n]);
     let moduli = [relaxation.equilibrium, terms.0];
     let mut body =
         Maxwell { form: Box::new(form), moduli, time: terms.1, displacement: zero(), stress: zero(), dissipated: 0.0 };
@@ -98,13 +85,10 @@ fn balance(is_periodic: bool, is_pressed: bool, steps: u32) -> [f64; 4] {
         // a relaxing contact carries less and less
         let carried = if is_pressed { force } else { 0.4 * force * (0.3 + 0.7 * (-t).exp()) };
         let [q1, q2] = [0.8 * (1.5 * t + 0.2).sin(), 0.3 * (3.0 * t).sin()].map(|part| 0.35 * carried * part);
-        let outcome = contact.step(
-            if step == 0 { 0.0 } else { dt },
-            pressed(t),
-            ShearLoad::force([q1, q2]).with_torque(0.1 * q1),
-        );
+        let length = if step == 0 { 0.0 } else { dt };
+        let outcome = contact.step(length, pressed(t), ShearLoad::force([q1, q2]).with_torque(0.1 * q1));
         assert!(matches!(outcome.unwrap(), Outcome::Holds(_)), "{step}");
-        body.step(if step == 0 { 0.0 } else { dt }, &contact.traction().concat());
+        body.step(length, &contact.traction().concat());
         let work = contact.lateral_work();
         largest = largest.max(work.stored);
         assert!((work.stored - body.stored()).abs() < 1e-9 * largest, "{step}: {} {}", work.stored, body.stored());
