@@ -1,7 +1,8 @@
 //! Where the work along the surface goes, against the springs and dashpots of a dense body.
 
-use viscocontact::friction::{Coulomb, FrictionContact, Outcome, ShearLoad};
+use viscocontact::friction::{Coulomb, FrictionContact, LateralWork, Outcome, ShearLoad};
 use viscocontact::prelude::*;
+use viscocontact::states::{Reach, StatesContact, Sweep};
 
 use super::dense::relaxation;
 use super::space::{half_space, pair, periodic};
@@ -96,6 +97,41 @@ fn balance(is_periodic: bool, is_pressed: bool, steps: u32) -> [f64; 4] {
     }
     let work = contact.lateral_work();
     [work.work, work.slip, work.creep, work.creep - body.dissipated]
+}
+
+/// A cylinder on a body of one relaxation time that is pressed and sheared to and fro by forces: on cells and on states,
+/// whose losses are found in other ways.
+#[test]
+fn energies_in_space_are_those_on_states() {
+    let (grid, material) = (Grid::new([192, 1], [1.0, 1.0]).unwrap(), pair(&relaxation(0), 0.5));
+    let shape = FnGeometry::new(|x, _| 2.0 * x * x);
+    let kernel = InfluenceKernel::line(&grid, 3.0).unwrap();
+    let (settings, force) = (Settings::default().with_tolerance(1e-11).with_edge(Edge::Allow), 0.05);
+    let states = Sweep::new(grid.clone(), &shape).kernel(kernel.clone()).run(Reach::Level(8.0 * force)).unwrap();
+    let mut last = f64::INFINITY;
+    for steps in [16, 64] {
+        let scene = ViscoelasticContact::builder(grid.clone()).geometry(&shape).material(material.clone());
+        let scene = scene.kernel(kernel.clone()).settings(settings.clone());
+        let mut space = FrictionContact::new(scene, Coulomb::new(0.5).unwrap()).unwrap();
+        let mut levels = StatesContact::new(&states, &material).unwrap().with_friction(0.5).unwrap();
+        let mut energies = [[0.0; 4]; 2];
+        for step in 0..=steps {
+            let phase = 3.0 * f64::from(step) / f64::from(steps);
+            let (dt, pressed) = (if step == 0 { 0.0 } else { 3.0 / f64::from(steps) }, force * (1.0 + 0.3 * phase));
+            let along = 0.3 * force * (2.5 * phase + 0.1).sin();
+            let outcome = space.step(dt, Load::force(pressed), ShearLoad::force([along, 0.0])).unwrap();
+            assert!(matches!(outcome, Outcome::Holds(_)), "{step}");
+            levels.step_sheared(dt, Load::force(pressed), Load::force(along)).unwrap();
+            energies = [space.lateral_work(), levels.lateral_work()]
+                .map(|LateralWork { work, slip, stored, creep, .. }| [work, slip, stored, creep]);
+        }
+        let [by_cells, by_levels] = energies;
+        let off = (0..4).map(|k| (by_cells[k] - by_levels[k]).abs() / by_cells[0]).fold(0.0, f64::max);
+        println!("{steps}: {by_cells:?} {by_levels:?} {off:.1e}");
+        assert!(off < 0.4 * last);
+        last = off;
+    }
+    assert!(last < 2e-3);
 }
 
 #[test]
