@@ -183,14 +183,8 @@ impl FrictionContact {
         // K (U_old − U_before), less the motion that is prescribed
         trial.gradient.iter_mut().zip(&*free).zip(history.displacements()).for_each(|((d, free), now)| *d = free - now);
         kernel.apply(&trial.gradient, drift);
-        let mut wanted = [None; 3];
-        let mut given = [0.0; 3];
-        for (k, component) in shear.components.iter().enumerate() {
-            match *component {
-                Component::Force(force) => wanted[k] = Some(force / area),
-                Component::Motion(to) => given[k] = to - motion[k],
-            }
-        }
+        let (forces, given) = shear.prescribed(*motion);
+        let wanted = forces.map(|force| force.map(|force| force / area));
         take_motion(drift, 0..cells, entered, places, given);
         let side = self.response.self_influence();
         let problem = Problem { side, compliance, bound, drift, places, entered, wanted, cancelled };
@@ -223,14 +217,12 @@ impl FrictionContact {
         let works = problem.works(solution, trial, change);
         state.work.iter_mut().zip(works).for_each(|(work, of_step)| *work += area * of_step);
         state.load_share = 1.0 / factor;
-        // what friction could cause
+        // beside what friction could cause
         let (carried, count) = (problem.reach(0), problem.touching().count().max(1) as f64);
         let could = [compliance * side * carried / count.sqrt(), area * carried];
         let arm = self.normal.fields().contact_area().sqrt();
         let now = [size(*motion, arm), size(state.force, arm.recip())];
-        for k in 0..2 {
-            state.largest[k] = state.largest[k].max(now[k]).max(NEGLIGIBLE * could[k]);
-        }
+        (0..2).for_each(|k| state.largest[k] = state.largest[k].max(now[k]).max(NEGLIGIBLE * could[k]));
         free.iter_mut().zip(&trial.traction).for_each(|(u, traction)| *u += compliance * traction);
         history.commit(free, &[]);
         std::mem::swap(solution, trial);

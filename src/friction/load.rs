@@ -28,6 +28,18 @@ impl ShearLoad {
         ShearLoad { components: [Component::Force(force[0]), Component::Force(force[1]), Component::Motion(0.0)] }
     }
 
+    /// The forces that are prescribed, and how far the other components move a body that is here.
+    pub(super) fn prescribed(&self, here: [f64; 3]) -> ([Option<f64>; 3], [f64; 3]) {
+        let (mut forces, mut moved) = ([None; 3], [0.0; 3]);
+        for (k, component) in self.components.iter().enumerate() {
+            match *component {
+                Component::Force(force) => forces[k] = Some(force),
+                Component::Motion(to) => moved[k] = to - here[k],
+            }
+        }
+        (forces, moved)
+    }
+
     /// A displacement \[m\], of a body that does not turn.
     pub fn motion(shift: [f64; 2]) -> ShearLoad {
         ShearLoad { components: [shift[0], shift[1], 0.0].map(Component::Motion) }

@@ -257,7 +257,7 @@ impl Levels {
             let edge = self.level;
             let swept = if self.history.leads() { self.swept(level) } else { 0.0 };
             self.cut_at(states, level);
-            let before = at_once.then(|| self.work_along());
+            let crept = at_once.then(|| self.crept_along());
             if lead > 0.0 {
                 self.lead_groups(self.groups_to(edge)..self.groups_to(level), lead, swept);
             }
@@ -266,7 +266,7 @@ impl Levels {
             let sheared = self.shear.as_ref().map_or(&[][..], Shear::displacements);
             self.history.commit(&self.trial, sheared);
             self.passed = self.history.differences_after(self.passed, swept);
-            before.into_iter().for_each(|before| self.work_at_once(before));
+            crept.into_iter().for_each(|crept| self.work_at_once(crept));
         } else if level == 0.0 {
             self.release();
             self.release_shear(along);

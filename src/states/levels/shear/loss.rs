@@ -72,18 +72,17 @@ impl Levels {
         shear.stick = stick.checked_sub(1).map_or(0.0, |k| groups[k].top);
     }
 
-    /// Of what acts along the surface: the work so far, and what of it is stored or lost by slip.
-    pub(in crate::states::levels) fn work_along(&self) -> [f64; 2] {
-        let Some(shear) = &self.shear else { return [0.0; 2] };
-        [shear.work, self.stored_along() + shear.lost]
+    /// What has crept of the work along the surface.
+    pub(in crate::states::levels) fn crept_along(&self) -> f64 {
+        self.shear.as_ref().map_or(0.0, |shear| shear.work - shear.lost - self.stored_along())
     }
 
-    /// In a step of no time bodies answer elastically: its work is what they store and lose by slip, also where contacts
-    /// grow or shrink in it, so that the force is no line in the displacement.
-    pub(in crate::states::levels) fn work_at_once(&mut self, [work, taken]: [f64; 2]) {
-        let [_, now] = self.work_along();
+    /// In a step of no time nothing creeps: its work is what bodies store and lose by slip, also where contacts grow or
+    /// shrink in it, so that the force is no line in the displacement.
+    pub(in crate::states::levels) fn work_at_once(&mut self, crept: f64) {
+        let stored = self.stored_along();
         if let Some(shear) = &mut self.shear {
-            shear.work = work + now - taken;
+            shear.work = crept + stored + shear.lost;
             shear.maxima[2] = shear.maxima[2].max(shear.work.abs());
         }
     }
