@@ -164,8 +164,12 @@ fn draw(args: &Args, runs: &[(&str, Run)]) -> Result<(), Box<dyn Error>> {
     Map::save_row(&maps, args.output.join("sections.png"))?;
 
     let time = || Quantity::new("time", "s");
-    let mut depth =
-        Chart::new("Maximum von Mises stress: its depth, and the contact radius", time(), Quantity::new("length", "m"), Legend::UpperLeft);
+    let mut depth = Chart::new(
+        "Maximum von Mises stress: its depth, and the contact radius",
+        time(),
+        Quantity::new("length", "m"),
+        Legend::UpperLeft,
+    );
     let mut relative =
         Chart::new("The same depth over the contact radius", time(), "depth / contact radius", Legend::LowerRight);
     for chart in [&mut depth, &mut relative] {

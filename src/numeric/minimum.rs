@@ -1,7 +1,7 @@
 //! Where a function of one number has its minimum.
 
-/// Where `of` has its minimum between `low` and `high`, in the units of both, if it has one minimum there: by so many golden
-/// sections, each of which leaves 0.618 of the interval (Kiefer, Proc. Am. Math. Soc. 4, 1953).
+/// Where `of` has its minimum between `low` and `high`, in the units of both, if it has no other there: by so many
+/// golden sections, each of which leaves 0.618 of the interval (Kiefer, Proc. Am. Math. Soc. 4, 1953).
 ///
 /// ```
 /// let found = viscocontact::numeric::golden_section(0.0, 3.0, 40, |x| (x - 1.0) * (x - 1.0));

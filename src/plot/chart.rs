@@ -161,14 +161,8 @@ impl Chart {
         legend::draw(&mut canvas, &entries, self.legend, &frame, &self.points(&frame));
         if let Some(bar) = &self.bar {
             let color = |at: f64| Color::on_scale(LIGHTEST * at);
-            color_bar::draw(
-                &mut canvas,
-                frame.right,
-                [TOP, frame.bottom],
-                &bar.axis(frame.bottom - TOP)?,
-                color,
-                [false; 2],
-            );
+            let axis = bar.axis(frame.bottom - TOP)?;
+            color_bar::draw(&mut canvas, frame.right, [TOP, frame.bottom], &axis, color, [false; 2]);
         }
         Ok(Picture::new(canvas))
     }

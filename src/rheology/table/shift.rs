@@ -103,9 +103,7 @@ pub(super) fn shift_between(colder: &Isotherm, warmer: &Isotherm, is_vertical: b
     let mut by_column: Vec<(f64, f64)> = Vec::new();
     for &column in &all {
         let at_scatter = |scatter: &[f64]| {
-            numeric::minimum(low, high, TRIED, |shift| {
-                pair.cost(shift, &[column], scatter) + PER_DECADE * decades(shift)
-            })
+            numeric::minimum(low, high, TRIED, |by| pair.cost(by, &[column], scatter) + PER_DECADE * decades(by))
         };
         let is_inside = |shift: f64| (shift - low).min(high - shift) > 0.5 * step;
         let shift = pair.superposed(column, &mut scatter, at_scatter, is_inside);
