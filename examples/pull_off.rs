@@ -183,11 +183,11 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     );
     works.scale = Scale::LogLog;
     let across = |value: f64| apparent.iter().map(|&(speed, _)| (speed, value)).collect();
-    for (n, name) in ["closed form (JKR), relaxed", "closed form (JKR), instantaneous"].into_iter().enumerate() {
+    for (n, name) in ["closed form (JKR), relaxed: w", "closed form (JKR), instantaneous: k w"].into_iter().enumerate() {
         works.add(name, COLORS[n], Style::Line, across(-limits[n].pull_off_force() / (1.5 * PI * radius)));
     }
     works.add("computed", COLORS[2], Style::LineAndDots, apparent.clone());
-    works.add("opening edge, relaxed bulk", COLORS[3], Style::Line, theories);
+    works.add("theory of an opening edge, relaxed bulk", COLORS[3], Style::Line, theories);
     let [slow, fast] = dots;
     forces.add_family(Quantity::new("speed", "m/s"), Style::Line, curves);
     forces.add("closed form (JKR), relaxed", COLORS[6], Style::Dots, slow);
