@@ -183,7 +183,8 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     );
     works.scale = Scale::LogLog;
     let across = |value: f64| apparent.iter().map(|&(speed, _)| (speed, value)).collect();
-    for (n, name) in ["closed form (JKR), relaxed: w", "closed form (JKR), instantaneous: k w"].into_iter().enumerate() {
+    for (n, name) in ["closed form (JKR), relaxed: w", "closed form (JKR), instantaneous: k w"].into_iter().enumerate()
+    {
         works.add(name, COLORS[n], Style::Line, across(-limits[n].pull_off_force() / (1.5 * PI * radius)));
     }
     works.add("computed", COLORS[2], Style::LineAndDots, apparent.clone());
