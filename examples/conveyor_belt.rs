@@ -69,7 +69,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         Legend::UpperLeft,
     );
     let mut table = csv::Writer::from_path(args.output.join("resistance.csv"))?;
-    table.write_record(["cover_m", "speed_m_s", "friction", "width_m", "greatest_pressure_pa", "transforms"])?;
+    table.write_record(["cover_m", "speed_m_s", "friction", "width_m", "max_pressure_pa", "transforms"])?;
     for (k, cover) in COVERS.into_iter().enumerate() {
         let layer = viscocontact::Layer::bonded_to_material(cover, &rubber()?, &steel)?;
         let mut belt = ViscoelasticContact::builder(grid.clone())

@@ -14,7 +14,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use clap::Parser;
-use viscocontact::plot::{COLORS, Chart, Legend, Quantity, Scale, Style};
+use viscocontact::plot::{COLORS, Chart, Legend, Quantity, Scale, Style, measure};
 use viscocontact::prelude::*;
 use viscocontact::states::LateralWork;
 
@@ -102,9 +102,9 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let parts = if args.quick { 1 } else { 4 };
     let frequencies = (-3 * parts..=2 * parts).map(|k| 10f64.powf(f64::from(k) / f64::from(parts)));
     let mut loops = Chart::new(
-        "A ball on rubber, moved to and fro",
+        "A ball on rubber, moved to and fro at four frequencies",
         Quantity::new("displacement", "m"),
-        Quantity::new("force along the surface", "N"),
+        Quantity::new("tangential force", "N"),
         Legend::UpperLeft,
     );
     let mut table = csv::Writer::from_path(args.output.join("cycles.csv"))?;
@@ -128,7 +128,9 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         }
     }
     table.flush()?;
-    loops.add_family(Quantity::new("frequency", "Hz"), Style::Line, curves);
+    for ((frequency, path), color) in curves.into_iter().zip(COLORS) {
+        loops.add(measure(frequency, "Hz"), color, Style::Line, path);
+    }
     loops.save(args.output.join("loops.png"))?;
     let mut losses = Chart::new(
         "Energy dissipated in a cycle",

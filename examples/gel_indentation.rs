@@ -63,8 +63,10 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let until = 20.0_f64;
     let widest = (0.75 * args.radius * args.load * material.contact_compliance(until)).cbrt();
 
-    let mut depths = Chart::new("A gel on glass under a ball", "time [s]", "indentation [µm]", Legend::UpperLeft);
-    let mut errors = Chart::new("Compliance read from the indentation", "√(Rδ)/h", "error", Legend::LowerLeft);
+    let mut depths =
+        Chart::new("Indentation of gels on glass by a ball", "time [s]", "indentation [µm]", Legend::UpperLeft);
+    let mut errors =
+        Chart::new("Error of the compliance that formulas read", "√(Rδ) / h", "relative error", Legend::LowerLeft);
     let mut compliances =
         Chart::new("Compliance read by Hertz's formula", "time [s]", "C(t) [1/kPa]", Legend::UpperLeft);
     (depths.scale, compliances.scale) = (Scale::LogX, Scale::LogX);
@@ -134,9 +136,9 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let times: Vec<f64> =
         (0..60).map(|k| 1.0e-3 * 10_f64.powf((until / 1.0e-3).log10() * f64::from(k) / 59.0)).collect();
     let color = COLORS[args.thickness.len() % COLORS.len()];
-    depths.add("half-space", color, Style::Dots, times.iter().map(|&t| (t, half_space(t))).collect());
+    depths.add("half-space (closed form)", color, Style::Dots, times.iter().map(|&t| (t, half_space(t))).collect());
     let true_values = times.iter().map(|&t| (t, 1e3 * material.contact_compliance(t))).collect();
-    compliances.add("that of the gels", color, Style::Dots, true_values);
+    compliances.add("compliance of the gels", color, Style::Dots, true_values);
     for (k, points) in read.iter_mut().enumerate() {
         points.sort_by(|one, other| one.0.total_cmp(&other.0));
         errors.add(SERIES[k].0, COLORS[k], Style::Line, points.clone());

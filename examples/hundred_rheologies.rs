@@ -124,8 +124,9 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
             points.push((report.time, share(follow.contact().contact_area())));
         }
     }
+    let points = points.into_iter().step_by(4).collect();
     println!("one of them in space: {steps} steps in {:.2} s", began.elapsed().as_secs_f64());
-    chart.add("one of them, stepped in space", COLORS[1], Style::Dots, points);
+    chart.add(format!("exponent {exponent:.3}, stepped in space"), COLORS[1], Style::Dots, points);
     chart.save(args.output.join("areas.png"))?;
     println!("the picture is in {}", args.output.display());
     Ok(())

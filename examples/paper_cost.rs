@@ -1,5 +1,5 @@
 //! The cost that the source paper states in its section 4, measured: O(N_t² N₁N₂ log(N₁N₂)) for its algorithm taken literally
-//! (`paper/`), beside the default of this crate; and the ratio of their times, cause by cause. Writes a table (CSV) and a picture.
+//! (`paper/`), beside the default of this crate; and the ratio of their times, cause by cause. Writes a table (CSV) and pictures.
 //!
 //! Times are processor times where the system measures them (Linux), so that a busy machine disturbs them little.
 //!
@@ -18,7 +18,7 @@ use std::time::Instant;
 use clap::Parser;
 use step_loaded_sphere::StepLoadedSphere;
 use viscocontact::Result;
-use viscocontact::plot::{COLORS, Chart, Legend, Picture, Scale, Style};
+use viscocontact::plot::{COLORS, Chart, Legend, Scale, Style};
 use viscocontact::prelude::*;
 
 /// Measures the cost that the source paper states.
@@ -39,7 +39,7 @@ struct Args {
     /// Small grids and few steps: no times to rely on.
     #[arg(long)]
     quick: bool,
-    /// Folder for table and picture.
+    /// Folder for table and pictures.
     #[arg(long, default_value = "out/paper_cost")]
     output: PathBuf,
 }
@@ -113,14 +113,13 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     table.write_record(["way", "cells", "steps", "convolutions", "seconds"])?;
     let over_steps: Vec<_> = args.steps.iter().map(|&steps| (steps as f64, args.cells_of_steps, steps)).collect();
     let over_cells: Vec<_> = args.cells.iter().map(|&n| ((n * n) as f64, n, args.steps_of_cells)).collect();
-    let pictures = [
-        sweep(&mut table, [&format!("{}² cells", args.cells_of_steps), "N_t"], &over_steps)?,
-        sweep(&mut table, [&format!("{} steps", args.steps_of_cells), "N1 N2"], &over_cells)?,
-    ];
+    let steps = sweep(&mut table, [&format!("{}² cells", args.cells_of_steps), "time steps N_t"], &over_steps)?;
+    let cells = sweep(&mut table, [&format!("{} steps", args.steps_of_cells), "cells N1 N2"], &over_cells)?;
     table.flush()?;
-    Picture::beside(&pictures)?.save(args.output.join("paper_cost.png"))?;
+    steps.save(args.output.join("paper_cost_steps.png"))?;
+    cells.save(args.output.join("paper_cost_cells.png"))?;
     causes(args)?;
-    println!("table and picture are in {}", args.output.display());
+    println!("table and pictures are in {}", args.output.display());
     Ok(())
 }
 
@@ -129,7 +128,7 @@ fn sweep(
     table: &mut csv::Writer<fs::File>,
     [of, symbol]: [&str; 2],
     runs: &[(f64, usize, usize)],
-) -> Result<Picture, Box<dyn Error>> {
+) -> Result<Chart, Box<dyn Error>> {
     let mut chart = Chart::new(format!("Time of a run, {of}"), symbol, "processor time [s]", Legend::UpperLeft);
     chart.scale = Scale::LogLog;
     println!("\n{of}\n| way | {symbol} | convolutions | seconds |\n|---|---|---|---|");
@@ -146,7 +145,7 @@ fn sweep(
         println!("exponents of {symbol}: {:.2} of convolutions, {:.2} of time", exponent(&counts), exponent(&times));
         chart.add(way.0, color, Style::LineAndDots, times);
     }
-    Ok(chart.draw()?)
+    Ok(chart)
 }
 
 /// From the paper's algorithm to the default, one cause after the other.

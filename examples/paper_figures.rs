@@ -115,7 +115,7 @@ fn eccentric_punch(cells: usize) -> Drawn {
         let (exact, contact) = (lure(e)?, pressed_punch(cells, e)?);
         merits.push(figure_2(&contact, e)?);
         let curve = between(-0.98, 0.98).map(|x| (x, exact.pressure(x * RADIUS, 0.0) / mean)).collect();
-        chart.add(format!("e = {e} R, Lur'e"), color, Style::Line, curve);
+        chart.add(format!("e = {e} R, closed form (Lur'e)"), color, Style::Line, curve);
         let dots = thinned(along_x1(contact.grid(), contact.pressure(), [RADIUS, mean]).into_iter());
         let dots = dots.into_iter().filter(|(x, _)| x.abs() < 0.98).collect();
         chart.add(if e == 0.0 { "computed (dots)" } else { "" }, color, Style::Dots, dots);
@@ -150,9 +150,15 @@ fn opening(cells: usize) -> Drawn {
         }
     }
     let names = [format!("{cells}² cells"), format!("{}² cells", 2 * cells)];
-    let mut areas = Chart::new("Contact area", "e / R", "area / area of the face", Legend::LowerLeft);
-    let mut tilts = Chart::new("Tilt", "e / R", "tilt R² E* / (3W / 4)", Legend::UpperLeft);
-    tilts.add("Lur'e, e < R/3", COLORS[2], Style::Line, vec![(0.0, 0.0), (1.0 / 3.0, 1.0 / 3.0)]);
+    let mut areas = Chart::new(
+        "Figure 3: contact area over the eccentricity",
+        "e / R",
+        "area / area of the face",
+        Legend::LowerLeft,
+    );
+    let mut tilts =
+        Chart::new("Figure 3: tilt over the eccentricity", "e / R", "tilt R² E* / (3W / 4)", Legend::UpperLeft);
+    tilts.add("closed form (Lur'e), e < R/3", COLORS[2], Style::Line, vec![(0.0, 0.0), (1.0 / 3.0, 1.0 / 3.0)]);
     for (chart, curve, finer) in [(&mut areas, area, finer_area), (&mut tilts, tilt, finer_tilt)] {
         chart.add(&names[0], COLORS[0], Style::Dots, curve);
         chart.add(&names[1], COLORS[1], Style::Dots, finer);
@@ -236,7 +242,7 @@ fn figure_6_as_a_study(args: &Args) -> Result<(), Box<dyn Error>> {
         Ok(ViscoelasticContact::builder(grid).geometry(&shape).material(material.clone()).settings(settings))
     };
     let accuracy = if args.quick { Accuracy::new(5e-2)? } else { Accuracy::COARSE };
-    let study = Study::new(scene, &load, until).accuracy(accuracy).ask(Observable::GreatestPressure);
+    let study = Study::new(scene, &load, until).accuracy(accuracy).ask(Observable::MaxPressure);
     let study = study.fields_at(&[until]).run()?;
     println!("{study}");
     study.write_csv(args.output.join("study.csv"))?;
@@ -248,15 +254,16 @@ fn figure_6_as_a_study(args: &Args) -> Result<(), Box<dyn Error>> {
 fn few_steps(few: &[&FewSteps], cells: usize) -> Result<Picture> {
     let scene = if few[0].figure == 5 { StepLoadedSphere::zener() } else { StepLoadedSphere::maxwell() };
     let (units, exact, grid) = (hertz(&scene)?, scene.reference()?, scene.grid(cells)?);
-    let title = "t = 2 τ in few steps, and with the field to 1e-3";
+    let title = format!("Figure {}: t = 2 τ in few steps", few[0].figure);
     let mut chart = Chart::new(title, "r / a_H", "p / p_H", Legend::LowerLeft);
     let half = |pressure: &[f64]| -> Vec<(f64, f64)> {
         along_x1(&grid, pressure, units).into_iter().filter(|&(x, p)| x > 0.0 && p > 0.0).collect()
     };
     let asked = few[0].pressures.iter().zip(&few[0].errors).next_back();
     let asked =
-        asked.map(|(pressure, error)| (format!("{} steps, field to 1e-3: {error:.1e}", FEW_STEPS[0]), pressure));
-    let alone = few[..3].iter().map(|few| (format!("{} steps: {:.1e}", few.steps, few.errors[0]), &few.pressures[0]));
+        asked.map(|(pressure, error)| (format!("{} steps, field to 1e-3: error {error:.1e}", FEW_STEPS[0]), pressure));
+    let alone =
+        few[..3].iter().map(|few| (format!("{} steps: error {:.1e}", few.steps, few.errors[0]), &few.pressures[0]));
     for ((name, pressure), color) in alone.chain(asked).zip(COLORS) {
         chart.add(name, color, Style::Line, half(pressure));
     }

@@ -142,7 +142,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         });
         forces.add(name, COLORS[n], Style::Line, path.iter().map(|point| (point[0], point[1])).collect());
         let mut map = Map::traction(&strongest)?;
-        map.title = format!("{name}: at the maximum pull");
+        map.title = format!("{name}: maximum pull");
         map.range = [-work / range, work / range];
         maps.push(map);
     }

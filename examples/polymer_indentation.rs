@@ -90,10 +90,10 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         "time_s",
         "contact_radius_m",
         "exact_contact_radius_m",
-        "greatest_pressure_pa",
+        "max_pressure_pa",
         "elastic_bulk_contact_radius_m",
         "elastic_bulk_exact_contact_radius_m",
-        "elastic_bulk_greatest_pressure_pa",
+        "elastic_bulk_max_pressure_pa",
     ])?;
     let mut worst = [0.0_f64; 2];
     for (one, other) in runs[0].history.iter().zip(&runs[1].history) {

@@ -57,7 +57,7 @@ struct Args {
 /// The zone of the exponential attraction over its length l and the stiffening, fitted (docs/guide/adhesion.md).
 const ZONE: f64 = 1.4;
 
-/// Least and greatest speed in unit depths a relaxation time, as powers of ten.
+/// Minimum and maximum speed in unit depths a relaxation time, as powers of ten.
 const DECADES: [i32; 2] = [-3, 2];
 
 fn main() {
@@ -112,7 +112,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let [_, rest] = limits[0].state(widest);
     let shift = [0.0, (1.0 - 1.0 / ratio) * rest];
     let dots = [0, 1].map(|n| {
-        let (limit, narrowest) = (limits[n], limits[n].radius_at_least_approach());
+        let (limit, narrowest) = (limits[n], limits[n].radius_at_min_approach());
         let radii = (0..=20).map(|k| widest + (narrowest - widest) * f64::from(k) / 20.0);
         let points = radii.map(|a| limit.state(a)).map(|[force, approach]| (approach + shift[n], force));
         points.collect::<Vec<_>>()
@@ -130,7 +130,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     }
 
     let mut forces = Chart::new(
-        "A ball is pulled off a creeping body",
+        "A ball is pulled off a creeping body at six speeds",
         Quantity::new("approach", "m"),
         Quantity::new("force", "N"),
         Legend::LowerRight,
@@ -138,7 +138,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let mut table = csv::Writer::from_path(args.output.join("histories.csv"))?;
     table.write_record(["speed_m_s", "time_s", "approach_m", "force_n", "contact_area_m2"])?;
     let mut summary = csv::Writer::from_path(args.output.join("pulls.csv"))?;
-    summary.write_record(["speed_m_s", "greatest_pull_n", "apparent_work_of_adhesion_j_m2", "theory_j_m2", "steps"])?;
+    summary.write_record(["speed_m_s", "maximum_pull_n", "apparent_work_of_adhesion_j_m2", "theory_j_m2", "steps"])?;
     let exponents: Vec<i32> = (3 * DECADES[0]..=3 * DECADES[1]).step_by(every).collect();
     let progress = support::progress(exponents.len() as u64);
     let (mut apparent, mut theories) = (Vec::new(), Vec::new());
@@ -149,16 +149,16 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         for [time, approach, force, area] in &path {
             table.serialize((speed, time, approach, force, area))?;
         }
-        let greatest = path.iter().map(|point| -point[2]).fold(0.0, f64::max);
-        let adhesion = greatest / (1.5 * PI * radius);
+        let pulled = path.iter().map(|point| -point[2]).fold(0.0, f64::max);
+        let adhesion = pulled / (1.5 * PI * radius);
         let theory = -edge.pull_off(radius, rest, speed)?.force / (1.5 * PI * radius);
-        summary.serialize((speed, greatest, adhesion, theory, path.len() - 1))?;
+        summary.serialize((speed, pulled, adhesion, theory, path.len() - 1))?;
         progress.suspend(|| {
             println!(
                 "{} (V τ/l = {:.1e}): maximum pull {:.3} mN, apparent work of adhesion {:.2} w (theory {:.2} w), {} steps",
                 measure(speed, "m/s"),
                 speed * args.tau / edge.length(),
-                1e3 * greatest,
+                1e3 * pulled,
                 adhesion / work,
                 theory / work,
                 path.len() - 1
@@ -176,22 +176,23 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     summary.flush()?;
 
     let mut works = Chart::new(
-        "Maximum pull F over speed: F/(1.5 π R)",
+        "Apparent work of adhesion F/(1.5 π R) of the maximum pull F",
         Quantity::new("speed", "m/s"),
         Quantity::new("apparent work of adhesion", "J/m²"),
         Legend::LowerRight,
     );
     works.scale = Scale::LogLog;
     let across = |value: f64| apparent.iter().map(|&(speed, _)| (speed, value)).collect();
-    for (n, name) in ["JKR, relaxed: w", "JKR, instantaneous: k w"].into_iter().enumerate() {
+    for (n, name) in ["closed form (JKR), relaxed: w", "closed form (JKR), instantaneous: k w"].into_iter().enumerate()
+    {
         works.add(name, COLORS[n], Style::Line, across(-limits[n].pull_off_force() / (1.5 * PI * radius)));
     }
     works.add("computed", COLORS[2], Style::LineAndDots, apparent.clone());
-    works.add("an edge that opens, relaxed bulk", COLORS[3], Style::Line, theories);
+    works.add("theory of an opening edge, relaxed bulk", COLORS[3], Style::Line, theories);
     let [slow, fast] = dots;
     forces.add_family(Quantity::new("speed", "m/s"), Style::Line, curves);
-    forces.add("JKR: relaxed, and instantaneous with radius kR", COLORS[6], Style::Dots, slow);
-    forces.add("", COLORS[6], Style::Dots, fast);
+    forces.add("closed form (JKR), relaxed", COLORS[6], Style::Dots, slow);
+    forces.add("closed form (JKR), instantaneous", COLORS[1], Style::Dots, fast);
     works.save(args.output.join("work.png"))?;
     forces.save(args.output.join("force.png"))?;
     println!("tables and pictures are in {}", args.output.display());

@@ -132,8 +132,8 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     table.write_record([
         "velocity_m_s",
         "reach_over_glassy_half_width",
-        "greatest_pressure_pa",
-        "reference_greatest_pressure_pa",
+        "max_pressure_pa",
+        "reference_max_pressure_pa",
         "width_m",
         "reference_width_m",
         "friction",

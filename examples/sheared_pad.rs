@@ -68,9 +68,13 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         .keep_pressures()
         .run(Reach::Level(1.05 * args.pressure * nominal * rubber.contact_compliance(durations[2])))?;
     let quantity = Quantity::new("displacement", "m");
-    let mut areas =
-        Chart::new("Contact area and stick area", quantity.clone(), "share of the surface", Legend::UpperRight);
-    let mut forces = Chart::new("Force along the surface", quantity, "force over f P", Legend::LowerRight);
+    let mut areas = Chart::new(
+        "Contact area (dots) and stick area (lines) of a sheared pad",
+        quantity.clone(),
+        "area / nominal area",
+        Legend::UpperRight,
+    );
+    let mut forces = Chart::new("Tangential force", quantity, "force / f P", Legend::LowerRight);
     let mut table = csv::Writer::from_path(args.output.join("areas.csv"))?;
     table.write_record(["duration [s]", "displacement [m]", "in contact", "sticks", "force over f P"])?;
     let (held, limit) = (StepLoad::new(load)?, args.friction * args.pressure * nominal);
@@ -108,9 +112,9 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
             area[area.len() - 1].1,
             1e6 * slides
         );
-        areas.add(format!("in contact, {until:.0e} s"), COLORS[n], Style::Dots, area);
-        areas.add(format!("sticks, {until:.0e} s"), COLORS[n], Style::Line, stick);
-        forces.add(format!("{until:.0e} s"), COLORS[n], Style::Line, force);
+        areas.add(format!("contact, sheared in {until} s"), COLORS[n], Style::Dots, area);
+        areas.add(format!("stick, sheared in {until} s"), COLORS[n], Style::Line, stick);
+        forces.add(format!("sheared in {until} s"), COLORS[n], Style::Line, force);
         if let Some(contact) = half.filter(|_| n == 1) {
             let pressure = contact.pressure()?;
             // blank outside the contact
@@ -122,8 +126,8 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
                 Map::new(&grid, inside(contact.shear()?), Quantity::new("tangential traction", "Pa"))?,
             ];
             maps.iter_mut().for_each(|map| map.range[0] = 0.0);
-            maps[0].title = "pressure".into();
-            maps[1].title = "tangential traction, Q = 0.6 f P".into();
+            maps[0].title = "pressure, Q = 0.6 f P".into();
+            maps[1].title = "traction, Q = 0.6 f P".into();
             Map::save_row(&maps, args.output.join("tractions.png"))?;
         }
     }

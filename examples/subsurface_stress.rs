@@ -18,7 +18,7 @@ use std::path::PathBuf;
 use clap::Parser;
 use viscocontact::contact::StressHistory;
 use viscocontact::observe::{Stress, StressPeak, StressSection};
-use viscocontact::plot::{COLORS, Chart, Legend, Map, Picture, Quantity, Scale, Style};
+use viscocontact::plot::{COLORS, Chart, Legend, Map, Quantity, Scale, Style};
 use viscocontact::prelude::*;
 
 /// The greatest von Mises stress below a ball on a polymer that creeps.
@@ -100,7 +100,7 @@ fn press(args: &Args, material: Material, length: f64, advance: impl Fn()) -> vi
         let radius = (contact.contact_area() / std::f64::consts::PI).sqrt();
         // nearer the surface the cells that joined last stand out, as in the pressure: they are stiffer than their neighbours
         let depths: Vec<f64> = (2..=12).map(|k| 0.1 * f64::from(k) * radius).collect();
-        let peak = stress.greatest(&depths, Stress::von_mises)?;
+        let peak = stress.maximum(&depths, Stress::von_mises)?;
         run.moments.push(Moment { time: contact.time(), radius, pressure: contact.fields().max_pressure(), peak });
         if k == 0 || k == args.steps {
             let depths: Vec<f64> = (0..cells / 2).map(|k| (k as f64 + 0.5) * step).collect();
@@ -164,20 +164,29 @@ fn draw(args: &Args, runs: &[(&str, Run)]) -> Result<(), Box<dyn Error>> {
     Map::save_row(&maps, args.output.join("sections.png"))?;
 
     let time = || Quantity::new("time", "s");
-    let mut depth =
-        Chart::new("Depth of the maximum von Mises stress", time(), Quantity::new("depth", "m"), Legend::UpperLeft);
-    let mut relative = Chart::new("The same over the contact radius", time(), "z / a", Legend::LowerRight);
+    let mut depth = Chart::new(
+        "Maximum von Mises stress: its depth, and the contact radius",
+        time(),
+        Quantity::new("length", "m"),
+        Legend::UpperLeft,
+    );
+    let mut relative =
+        Chart::new("The same depth over the contact radius", time(), "depth / contact radius", Legend::LowerRight);
     for chart in [&mut depth, &mut relative] {
         chart.scale = Scale::LogX;
     }
     for ((name, run), color) in runs.iter().zip(COLORS) {
         // the jump has no place on a logarithmic axis
         let later = || run.moments.iter().skip(1);
-        depth.add(*name, color, Style::LineAndDots, later().map(|m| (m.time, m.peak.position[2])).collect());
+        let depths = later().map(|m| (m.time, m.peak.position[2])).collect();
+        depth.add(format!("depth, {name}"), color, Style::LineAndDots, depths);
+        let radii = later().map(|m| (m.time, m.radius)).collect();
+        depth.add(format!("contact radius, {name}"), color, Style::Line, radii);
         let over = later().map(|m| (m.time, m.peak.position[2] / m.radius)).collect();
         relative.add(*name, color, Style::LineAndDots, over);
     }
-    Picture::beside(&[depth.draw()?, relative.draw()?])?.save(args.output.join("depth.png"))?;
+    depth.save(args.output.join("depth.png"))?;
+    relative.save(args.output.join("relative.png"))?;
     println!("table and pictures are in {}", args.output.display());
     Ok(())
 }

@@ -112,9 +112,9 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let mut table = csv::Writer::from_path(args.output.join("pulls.csv"))?;
     table.write_record(["probe", "speed_m_s", "displacement_m", "force_n", "contact_area_m2"])?;
     let mut works = Chart::new(
-        "Work of separation of the area in contact",
+        "Work of separation for each unit of the contact area",
         Quantity::new("speed", "m/s"),
-        "work of separation over w",
+        "work of separation / w",
         Legend::UpperLeft,
     );
     works.scale = Scale::LogX;

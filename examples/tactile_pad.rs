@@ -81,7 +81,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     (0..5).try_for_each(|_| take(&mut contact, 0.2, ShearLoad::force([0.0; 2])))?;
     (1..=10).try_for_each(|k| take(&mut contact, 0.2, ShearLoad::force([0.07 * f64::from(k) * limit, 0.0])))?;
     let shear = ShearLoad::force([0.7 * limit, 0.0]);
-    let sheared = maps(&grid, &contact, "sheared by 0.7 f P")?;
+    let sheared = maps(&grid, &contact, "sheared")?;
     (0..5).try_for_each(|_| take(&mut contact, 1.0, shear))?;
     let arm = (contact.normal().contact_area() / std::f64::consts::PI).sqrt();
     (1..=10).try_for_each(|k| take(&mut contact, 0.2, shear.with_torque(0.03 * f64::from(k) * limit * arm)))?;
@@ -90,12 +90,12 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     Map::save_row(&sheared, args.output.join("sheared.png"))?;
     Map::save_row(&twisted, args.output.join("twisted.png"))?;
     let mut chart = Chart::new(
-        "Share of the contact that sticks",
+        "Pressed to 1 s, sheared to 3 s, held to 8 s, twisted to 10 s",
         Quantity::new("time", "s"),
-        "stick over contact",
+        "stick area / contact area",
         Legend::LowerLeft,
     );
-    chart.add("sticks", COLORS[0], Style::LineAndDots, sticking);
+    chart.add("", COLORS[0], Style::LineAndDots, sticking);
     chart.save(args.output.join("sticks.png"))?;
     let work = contact.lateral_work();
     println!(
@@ -123,6 +123,8 @@ fn maps(grid: &Grid, contact: &FrictionContact, title: &str) -> viscocontact::Re
         Map::new(grid, inside(size(contact.slip())), Quantity::new("slip in the last step", "m"))?,
     ];
     maps.iter_mut().for_each(|map| map.range[0] = 0.0);
-    maps.iter_mut().for_each(|map| map.title = title.into());
+    for (map, what) in maps.iter_mut().zip(["pressure", "traction", "slip"]) {
+        map.title = format!("{what}, {title}");
+    }
     Ok(maps)
 }

@@ -77,11 +77,11 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let load = StepLoad::new(Load::force(args.load))?;
 
     let time = "time [min]";
-    let mut areas = Chart::new("A seal that warms up under a ball", time, "contact area [mm²]", Legend::UpperLeft);
-    let mut depths = Chart::new("A seal that warms up under a ball", time, "approach [mm]", Legend::UpperLeft);
+    let mut areas = Chart::new("Contact area of a ball on a seal", time, "contact area [mm²]", Legend::UpperLeft);
+    let mut depths = Chart::new("Approach of a ball to a seal", time, "approach [mm]", Legend::UpperLeft);
     let mut temperatures = Chart::new("Temperature of the seal", time, "temperature [°C]", Legend::UpperLeft);
     let mut reduced =
-        Chart::new("One curve over the reduced time", "reduced time [s]", "contact area [mm²]", Legend::UpperLeft);
+        Chart::new("Contact area over the reduced time", "reduced time [s]", "contact area [mm²]", Legend::UpperLeft);
     reduced.scale = Scale::LogX;
     let mut table = csv::Writer::from_path(args.output.join("seal.csv"))?;
     table.write_record(["seal", "time_s", "temperature_k", "reduced_time_s", "area_m2", "approach_m"])?;
@@ -140,7 +140,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         .map(|k| 10_f64.powf(f64::from(k) / 12.0))
         .map(|xi| (xi, 1e6 * std::f64::consts::PI * args.radius * approach(xi)))
         .collect();
-    reduced.add("Lee & Radok", COLORS[3], Style::Line, closed_form);
+    reduced.add("closed form (Lee & Radok)", COLORS[3], Style::Line, closed_form);
     areas.save(args.output.join("area.png"))?;
     depths.save(args.output.join("approach.png"))?;
     temperatures.save(args.output.join("temperature.png"))?;

@@ -75,7 +75,7 @@ pub fn stress_below_a_ball() -> Outcome {
     let contact = pressed(Grid::square(256, 2.6 * a)?, &Sphere::new(10.0e-3)?, Load::force(1.0))?;
     let stress = contact.fields().stress()?;
     let depths: Vec<f64> = (1..=12).map(|k| 0.1 * f64::from(k) * a).collect();
-    let peak = stress.greatest(&depths, Stress::von_mises)?;
+    let peak = stress.maximum(&depths, Stress::von_mises)?;
     let normal = stress.at(&[[0.0, 0.0, 2.0 * a]])?[0].s33;
     let rows = [
         ("maximum von Mises stress", peak.value, 0.532_697 * exact.max_pressure, 1e-3),

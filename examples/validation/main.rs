@@ -33,7 +33,7 @@ use std::path::{Path, PathBuf};
 use claim::{Checked, Claim, Outcome};
 use clap::Parser;
 use step_loaded_sphere::StepLoadedSphere;
-use viscocontact::plot::{COLORS, Chart, Legend, Picture, Scale, Style};
+use viscocontact::plot::{COLORS, Chart, Legend, Scale, Style};
 
 /// Computes every claim against its reference.
 #[derive(Parser)]
@@ -143,14 +143,10 @@ fn errors(claims: &[&Claim]) -> Chart {
     chart
 }
 
-/// Curves beside theirs, two in a row.
-fn save_rows(checked: &[Checked], folder: &Path) -> Result<(), Box<dyn Error>> {
+/// Curves on theirs, each in a file.
+fn save_curves(checked: &[Checked], folder: &Path) -> Result<(), Box<dyn Error>> {
     let charts: Vec<Chart> = checked.iter().filter_map(Checked::chart).collect();
-    for (row, charts) in (1..).zip(charts.chunks(2)) {
-        let pictures = charts.iter().map(Chart::draw).collect::<Result<Vec<Picture>, _>>()?;
-        Picture::beside(&pictures)?.save(folder.join(format!("validation_{row}.png")))?;
-    }
-    Ok(())
+    (1..).zip(&charts).try_for_each(|(k, chart)| Ok(chart.save(folder.join(format!("validation_{k}.png")))?))
 }
 
 fn run(args: &Args) -> Result<(), Box<dyn Error>> {
@@ -166,7 +162,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let table = table(&claims)?;
     print!("{table}");
     errors(&claims).save(args.output.join("validation_errors.png"))?;
-    save_rows(&checked, &args.output)?;
+    save_curves(&checked, &args.output)?;
     fs::write(args.output.join("claims.md"), &table)?;
     support::figures::figure("claims", &table)?;
     let failed: Vec<String> = claims

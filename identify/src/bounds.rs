@@ -6,7 +6,7 @@ use faer::{Mat, Side};
 use crate::error::{Error, Result};
 use crate::problem::Problem;
 
-/// The least standard deviations of the parameters that any unbiased estimate from an experiment can have, on the scale on
+/// The minimum standard deviations of the parameters that any unbiased estimate from an experiment can have, on the scale on
 /// which a parameter is searched for: relative for moduli, times and stiffness.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]

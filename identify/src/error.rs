@@ -153,12 +153,12 @@ pub enum Error {
     },
 
     /// A curve has too few points to tell a contact from scatter.
-    #[error("a curve of {points} points is too short: at least {least} are needed; measure at a higher rate")]
+    #[error("a curve of {points} points is too short: at least {minimum} are needed; measure at a higher rate")]
     ShortCurve {
         /// Points of the curve.
         points: usize,
         /// Points needed.
-        least: usize,
+        minimum: usize,
     },
 
     /// The force falls where the tip goes deeper.

@@ -29,7 +29,7 @@ impl Experiment {
         Experiment { protocol, tip, stiffness: f64::INFINITY, surface }
     }
 
-    /// The depth of a swept tip counts from its first touch at this `approach` \[m\], 0 for a shape whose least gap is 0, and not from where its
+    /// The depth of a swept tip counts from its first touch at this `approach` \[m\], 0 for a shape whose minimum gap is 0, and not from where its
     /// first cell touched: the gap at the nearest centre of a cell, dx²/4R of a sphere on cells of side dx. Contacts of few cells are a power of
     /// the depth then. It matters where the contact point is known: one that is fitted takes the difference.
     ///

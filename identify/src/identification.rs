@@ -172,7 +172,7 @@ impl Identification {
         problem.samples(0, &values, &prony)
     }
 
-    /// Cramér–Rao bounds of an experiment before it is made: the least standard deviations with which its parameters can be
+    /// Cramér–Rao bounds of an experiment before it is made: the minimum standard deviations with which its parameters can be
     /// found, with noise of standard deviation `sigma` \[N\]. `values` are the
     /// expected parameters of the material.
     ///

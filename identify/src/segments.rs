@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use viscocontact::numeric::least;
+use viscocontact::numeric::minimum;
 
 use crate::error::{Result, count_within};
 use crate::experiment::{Curve, Experiment};
@@ -145,6 +145,6 @@ impl Curve {
         let (lowest, last) = (range(drive)[0], drive[drive.len() - 1]);
         let travel = last - lowest;
         let misfit = |point: f64| self.elastic_law(point, give, has_offset)[2];
-        least(lowest - 0.1 * travel, lowest + 0.9 * travel, POINTS, misfit)
+        minimum(lowest - 0.1 * travel, lowest + 0.9 * travel, POINTS, misfit)
     }
 }

@@ -12,7 +12,7 @@
 
 use std::f64::consts::PI;
 
-use viscocontact::numeric::least;
+use viscocontact::numeric::minimum;
 
 use crate::error::{Error, Result, positive};
 use crate::experiment::Curve;
@@ -82,7 +82,7 @@ pub fn oliver_pharr(curve: &Curve, contact_point: f64, area: impl Fn(f64) -> f64
         let rest = lowest - range * below.exp();
         (rest, line(&fitted.iter().map(|&k| (depth[k] - rest).ln()).collect::<Vec<_>>(), &logs, true))
     };
-    let (rest, [intercept, exponent, _]) = power(least(-7.0, 4.0, POINTS, |below| power(below).1[2]));
+    let (rest, [intercept, exponent, _]) = power(minimum(-7.0, 4.0, POINTS, |below| power(below).1[2]));
     let stiffness = exponent * (intercept + (exponent - 1.0) * (depth[onset] - rest).ln()).exp();
     positive("stiffness at the onset of unloading", stiffness)?;
     let contact_depth = positive("contact depth", depth[onset] - EPSILON * greatest / stiffness)?;
@@ -139,7 +139,7 @@ pub fn hold_relaxation(curve: &Curve, contact_point: f64, correction: RampCorrec
     let ages: Vec<f64> = times[start..=end].iter().map(|time| time - times[start]).collect();
     let decay = |log_time: f64| -> Vec<f64> { ages.iter().map(|age| (-age * (-log_time).exp()).exp()).collect() };
     let fit = |log_time: f64| line(&decay(log_time), &moduli, true);
-    let time = least((0.5 * ages[1]).ln(), (10.0 * ages[ages.len() - 1]).ln(), POINTS, |log_time| fit(log_time)[2]);
+    let time = minimum((0.5 * ages[1]).ln(), (10.0 * ages[ages.len() - 1]).ln(), POINTS, |log_time| fit(log_time)[2]);
     let ([equilibrium, at_end, _], time) = (fit(time), time.exp());
     let touch = (0..start).find(|&k| drive[k + 1] > contact_point).unwrap_or_default();
     // the drive is linear in time around the first touch
@@ -195,5 +195,5 @@ fn depths(curve: &Curve, contact_point: f64) -> Vec<f64> {
 }
 
 fn enough(points: usize) -> Result<()> {
-    if points >= LEAST_POINTS { Ok(()) } else { Err(Error::ShortCurve { points, least: LEAST_POINTS }) }
+    if points >= LEAST_POINTS { Ok(()) } else { Err(Error::ShortCurve { points, minimum: LEAST_POINTS }) }
 }

@@ -113,9 +113,9 @@ fn curves_without_the_part_that_is_read_are_refused() -> Result<()> {
     let loading = Protocol::builder(0.0, 0.01).line(0.2e-6, 1.0).build()?;
     let curve = measured(Experiment::new(loading, ElasticStates::sphere(RADIUS)?), true)?;
     let unloading = oliver_pharr(&curve, 0.0, |depth| 2.0 * PI * RADIUS * depth);
-    assert!(matches!(unloading, Err(Error::ShortCurve { least: 5, .. })), "{unloading:?}");
+    assert!(matches!(unloading, Err(Error::ShortCurve { minimum: 5, .. })), "{unloading:?}");
     let held = hold_relaxation(&curve, 0.0, RampCorrection::Step);
-    assert!(matches!(held, Err(Error::ShortCurve { least: 5, .. })), "{held:?}");
+    assert!(matches!(held, Err(Error::ShortCurve { minimum: 5, .. })), "{held:?}");
     let swept = Sweep::new(Grid::square(32, 4.0e-6)?, &Sphere::new(RADIUS)?).run(Reach::Approach(0.1e-6))?;
     let beyond = Curve::new(Experiment::new(curve.experiment().protocol().clone(), swept), curve.force().to_vec())?;
     assert!(matches!(loading_modulus(&beyond, Some(0.0)), Err(Error::BeyondStates { .. })));

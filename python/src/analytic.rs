@@ -153,12 +153,12 @@ sticking! {
     /// >>> abs(force / gel.pull_off_force - 1) < 1e-12 and approach < 0
     /// True
     Jkr(radius, modulus, work) {
-        /// The least force [N]: negative, a pull.
+        /// The minimum force [N]: negative, a pull.
         pull_off_force: f64 = |of| of.pull_off_force();
-        /// The contact radius at the least force [m].
+        /// The contact radius at the minimum force [m].
         radius_at_pull_off: f64 = |of| of.radius_at_pull_off();
-        /// The contact radius at the least approach [m].
-        radius_at_least_approach: f64 = |of| of.radius_at_least_approach();
+        /// The contact radius at the minimum approach [m].
+        radius_at_min_approach: f64 = |of| of.radius_at_min_approach();
     }
     [
         /// Force [N] and approach [m] at a contact radius [m].
@@ -171,7 +171,7 @@ sticking! {
     /// >>> round(Dmt(1e-3, 1e9, 0.05).pull_off_force * 1e6, 2)     # µN: negative, a pull
     /// -314.16
     Dmt(radius, modulus, work) {
-        /// The least force [N]: negative, a pull.
+        /// The minimum force [N]: negative, a pull.
         pull_off_force: f64 = |of| of.pull_off_force();
     }
     [
@@ -188,7 +188,7 @@ sticking! {
     MaugisDugdale(radius, modulus, work, traction) {
         /// Maugis' parameter λ: `Dmt` is 0, `Jkr` infinity.
         parameter: f64 = |of| of.parameter();
-        /// The least force [N], negative, a pull; and the contact radius there [m].
+        /// The minimum force [N], negative, a pull; and the contact radius there [m].
         pull_off: (f64, f64) = |of| of.pull_off().into();
     }
     [
@@ -203,9 +203,9 @@ sticking! {
     /// >>> punch.pull_off_force < 0 and punch.approach_at_pull_off < 0
     /// True
     AdhesivePunch(radius, modulus, work) {
-        /// The least force [N]: negative, a pull.
+        /// The minimum force [N]: negative, a pull.
         pull_off_force: f64 = |of| of.pull_off_force();
-        /// The approach at the least force [m].
+        /// The approach at the minimum force [m].
         approach_at_pull_off: f64 = |of| of.approach_at_pull_off();
     } []
 
@@ -216,9 +216,9 @@ sticking! {
     /// >>> abs(roll.force(roll.width_at_pull_off) / roll.pull_off_force - 1) < 1e-12
     /// True
     AdhesiveCylinder(radius, modulus, work) {
-        /// The least force on a unit of length [N/m]: negative, a pull.
+        /// The minimum force on a unit of length [N/m]: negative, a pull.
         pull_off_force: f64 = |of| of.pull_off_force();
-        /// The half-width of the contact at the least force [m].
+        /// The half-width of the contact at the minimum force [m].
         width_at_pull_off: f64 = |of| of.width_at_pull_off();
     }
     [
@@ -235,9 +235,9 @@ sticking! {
     AdhesiveWave(amplitude, wavelength, modulus, work) {
         /// The strength α of the attraction: from 0.57 on the surfaces jump into full contact without load.
         strength: f64 = |of| of.strength();
-        /// The half-width of the contacts at the least mean pressure [m].
+        /// The half-width of the contacts at the minimum mean pressure [m].
         width_at_pull_off: f64 = |of| of.width_at_pull_off();
-        /// The least mean pressure [Pa].
+        /// The minimum mean pressure [Pa].
         pull_off_pressure: f64 = |of| of.pull_off_pressure();
     }
     [

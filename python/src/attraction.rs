@@ -10,7 +10,7 @@ use viscocontact::adhesion::{self as ad, Attraction as Law};
 made! {
     /// A law of the attraction between surfaces: traction [Pa] over gap [m].
     ///
-    /// Laws have the `work` of separation w [J/m²] and a `range` ρ [m], or the `greatest` traction [Pa] in its place.
+    /// Laws have the `work` of separation w [J/m²] and a `range` ρ [m], or the maximum traction `max_traction` [Pa] in its place.
     ///
     /// >>> law = Attraction.exponential(0.05, 0.1e-6)
     /// >>> law.work, law.range
@@ -27,21 +27,21 @@ macro_rules! laws {
             $(
                 $(#[$doc])*
                 #[staticmethod]
-                #[pyo3(signature = (work, range=None, *, greatest=None $(, $more=None)*))]
+                #[pyo3(signature = (work, range=None, *, max_traction=None $(, $more=None)*))]
                 fn $name(
                     py: Python<'_>,
                     work: f64,
                     range: Option<f64>,
-                    greatest: Option<f64>,
+                    max_traction: Option<f64>,
                     $($more: Option<f64>),*
                 ) -> PyResult<Attraction> {
-                    let law = match (range, greatest) {
+                    let law = match (range, max_traction) {
                         (Some(range), None) => ad::$law::new(work, range),
-                        (None, Some(greatest)) => ad::$law::of_traction(work, greatest),
-                        _ => return Err(PyTypeError::new_err("give range or greatest, one of them")),
+                        (None, Some(max_traction)) => ad::$law::of_traction(work, max_traction),
+                        _ => return Err(PyTypeError::new_err("give range or max_traction, one of them")),
                     };
                     $(let law = law.and_then(|law| $more.map_or(Ok(law), |width| law.with_width(width)));)*
-                    let keywords = dict! { py; "range": range, "greatest": greatest };
+                    let keywords = dict! { py; "range": range, "max_traction": max_traction };
                     $(keywords.set_item(stringify!($more), $more)?;)*
                     let recipe = Recipe::new(py, stringify!($name), (work,))?.with_keywords(Some(&keywords))?;
                     Ok(Attraction::by(recipe, law.or_raise()?))
@@ -112,7 +112,7 @@ getters! {Attraction.law, of:
         let work = of.work();
         nothing_raised(of.failure()).map(|()| work)
     };
-    /// Range: work over the greatest traction [m].
+    /// Range: work over the maximum traction [m].
     range: PyResult<f64> = {
         let range = of.range();
         nothing_raised(of.failure()).map(|()| range)

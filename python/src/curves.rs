@@ -164,12 +164,12 @@ impl Curve {
         self.part(py, self.of.within(first..last))
     }
 
-    /// The part until the drive first comes near its greatest value.
+    /// The part until the drive first comes near its maximum.
     fn approach(&self, py: Python<'_>) -> PyResult<Curve> {
         self.part(py, self.of.approach())
     }
 
-    /// The part until the drive leaves its greatest value: approach and hold.
+    /// The part until the drive leaves its maximum: approach and hold.
     fn loading(&self, py: Python<'_>) -> PyResult<Curve> {
         self.part(py, self.of.loading())
     }

@@ -109,7 +109,7 @@ macro_rules! of_fields {
             contact_area: f64 = of.contact_area();
             /// Mean pressure over the contact [Pa].
             mean_pressure: f64 = of.mean_pressure();
-            /// Greatest pressure of any cell [Pa].
+            /// Maximum pressure of any cell [Pa].
             max_pressure: f64 = of.max_pressure();
             /// Whether the bodies are apart.
             is_separated: bool = of.is_separated();

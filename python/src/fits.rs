@@ -57,7 +57,7 @@ getters! {Estimate.of, of:
     limit: Option<&'static str> = of.limit;
 }
 
-/// The result of a fit: `fit["E0"]` is the estimate of a parameter.
+/// The result of a fit: `fit["E0"]` is the estimate of a parameter, `fit["contact_point"]` that of a keyword, `fit.material()` the body for a contact.
 ///
 /// >>> experiment = Experiment.trapezoid(1e-6, (0.2, 0.5, 0.2), 0.05, ElasticStates.sphere(5e-6))
 /// >>> maxwell = Identification("maxwell")
@@ -81,7 +81,7 @@ type State = (Vec<f64>, Vec<(f64, [f64; 2], Vec<f64>)>, bool, usize, Option<f64>
 impl Fit {
     fn __getitem__(slf: Bound<'_, Self>, name: &str) -> PyResult<Estimate> {
         let fit = &slf.get().fit;
-        let Some(of) = fit.estimate(name).cloned() else {
+        let Some(of) = fit.estimate(name).or_else(|| fit.estimate(&name.replace('_', " "))).cloned() else {
             let names: Vec<&str> = fit.estimates().iter().map(|estimate| &*estimate.name).collect();
             return Err(PyKeyError::new_err(format!("no parameter is named {name:?}: there are {}", names.join(", "))));
         };
@@ -186,7 +186,7 @@ impl Fit {
     }
 
     /// Computes a curve once more in space, cell by cell, with the identified material under a `shape` on a `grid`: the force at each sample
-    /// [N], and the greatest difference from the fit over its greatest force. Keywords are those of `ViscoelasticContact`.
+    /// [N], and the maximum difference from the fit over its maximum force. Keywords are those of `ViscoelasticContact`.
     ///
     /// >>> experiment = Experiment.trapezoid(1e-6, (0.2, 0.5, 0.2), 0.05, ElasticStates.sphere(5e-6))
     /// >>> maxwell = Identification("maxwell")
@@ -262,7 +262,7 @@ getters! {Fit.fit, of:
     iterations: usize = of.iterations();
     /// Samples with the tip in contact.
     points_in_contact: usize = of.points_in_contact();
-    /// Standard deviation of the residuals over that of the noise, 1 if the model is right, and over the greatest force.
+    /// Standard deviation of the residuals over that of the noise, 1 if the model is right, and over the maximum force.
     misfit: (f64, f64) = of.misfit().into();
     /// What a user should know before the parameters are used, a line each.
     warnings: Vec<String> = of.warnings().iter().map(in_python).collect();

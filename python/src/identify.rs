@@ -194,7 +194,7 @@ impl Identification {
         Ok((line(py, force)?, line(py, depth)?))
     }
 
-    /// The least standard deviations that any unbiased estimate from experiments can have, by parameter: relative for moduli, times and
+    /// The minimum standard deviations that any unbiased estimate from experiments can have, by parameter: relative for moduli, times and
     /// stiffness. `sigma` [N] is the noise.
     fn bounds(
         &self,

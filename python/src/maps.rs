@@ -15,7 +15,7 @@ use crate::prelude::*;
 /// ----------
 /// heights : array of shape (n1, n2)
 ///     Heights [m], positive out of the material, x1 along the first axis; NaN where none was measured. A gap of the pair is the
-///     greatest height minus each height.
+///     maximum height minus each height.
 /// lengths : float or (float, float)
 ///     Sides of the rectangle of all points [m], a whole cell for each point.
 /// periodic : bool

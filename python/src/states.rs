@@ -292,6 +292,6 @@ getters! {ElasticStates.states, of:
     first_level: f64 = of.first_level();
     /// Poisson's ratio of the layer that was swept, which materials need to have; None of other bodies.
     nu: Option<f64> = of.poisson_ratio();
-    /// Greatest error of the depth between two states, relative.
+    /// Maximum error of the depth between two states, relative.
     interpolation_error: f64 = of.interpolation_error();
 }

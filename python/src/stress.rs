@@ -29,7 +29,7 @@ use crate::writers::{FORMATS, metadata};
 /// (32, 32, 6)
 /// >>> contact.stress().on_plane(1e-4, quantity="von_mises").shape
 /// (32, 32)
-/// >>> contact.stress().greatest([5e-5, 1e-4, 2e-4])["value"] > 0
+/// >>> contact.stress().maximum([5e-5, 1e-4, 2e-4])["value"] > 0
 /// True
 #[pyclass(frozen, module = "viscocontact")]
 pub struct SubsurfaceStress(pub ob::SubsurfaceStress);
@@ -66,7 +66,7 @@ impl SubsurfaceStress {
 
     fn __repr__(&self) -> String {
         let [n1, n2] = self.0.grid().cells();
-        format!("SubsurfaceStress({n1} × {n2} cells, least_depth={} m)", digits(self.0.least_depth()))
+        format!("SubsurfaceStress({n1} × {n2} cells, min_depth={} m)", digits(self.0.min_depth()))
     }
 
     /// The components below each cell at a `depth` [m]: an array of shape (n1, n2, 6).
@@ -110,12 +110,12 @@ impl SubsurfaceStress {
         shown(py, &values, quantity, &[points.len()])
     }
 
-    /// Where a quantity is greatest between the depths [m]: "value" [Pa], "position" [m], "components", and whether it is
+    /// Where a quantity has its maximum between the depths [m]: "value" [Pa], "position" [m], "components", and whether it is
     /// "at_end_of_depths", so that more may lie beyond.
     #[pyo3(signature = (depths, quantity="von_mises"))]
     fn greatest<'py>(&self, py: Python<'py>, depths: Vec<f64>, quantity: &str) -> PyResult<Dict<'py>> {
         let quantity = choice("quantity", quantity, &QUANTITIES)?;
-        let peak = free(py, || self.0.greatest(&depths, quantity)).or_raise()?;
+        let peak = free(py, || self.0.maximum(&depths, quantity)).or_raise()?;
         Ok(dict! { py; peak { value, position, at_end_of_depths }, "components": peak.stress.components().to_vec() })
     }
 
@@ -141,8 +141,8 @@ impl SubsurfaceStress {
 }
 
 getters! {SubsurfaceStress, of:
-    /// The least depth at which the stress is given [m].
-    least_depth: f64 = of.least_depth();
+    /// The minimum depth at which the stress is given [m].
+    min_depth: f64 = of.min_depth();
     /// The grid of the surface.
     grid: Grid = Grid(of.grid().clone());
 }
@@ -156,7 +156,7 @@ getters! {SubsurfaceStress, of:
 /// >>> history = StressHistory(contact)            # before the first load
 /// >>> for report in contact.follow(Load.force(20.0), 0.7, dt=0.1):
 /// ...     history.record(contact)                 # after every step
-/// >>> history.stress(contact).greatest([1e-4, 2e-4, 3e-4])["value"] > 0.5 * contact.max_pressure
+/// >>> history.stress(contact).maximum([1e-4, 2e-4, 3e-4])["value"] > 0.5 * contact.max_pressure
 /// True
 #[pyclass(module = "viscocontact")]
 pub struct StressHistory(ct::StressHistory);

@@ -13,7 +13,7 @@ const QUANTITIES: [(&str, Observable); 4] = [
     ("approach", Observable::Approach),
     ("force", Observable::Force),
     ("contact area", Observable::ContactArea),
-    ("maximum pressure", Observable::GreatestPressure),
+    ("maximum pressure", Observable::MaxPressure),
 ];
 
 /// A convergence study: runs on finer meshes and in shorter steps, until the measured errors of what is asked are below the accuracy. The result is the finest run.
@@ -26,7 +26,7 @@ const QUANTITIES: [(&str, Observable); 4] = [
 /// until : float
 ///     The end of the run [s].
 /// accuracy : float, default 1e-3
-///     Of approach and force, relative to their greatest values; in [1e-6, 0.1].
+///     Of approach and force, relative to their maxima; in [1e-6, 0.1].
 /// ask : list of str
 ///     What else has this accuracy: "contact area", "maximum pressure".
 /// quantities : dict of functions, optional
@@ -153,7 +153,7 @@ impl Study {
         self.study.fields().map(|fields| Fields(fields.keep())).collect()
     }
 
-    /// A quantity at `times` in the finest run, by its name; the greatest pressure is one number.
+    /// A quantity at `times` in the finest run, by its name; the maximum pressure is one number.
     fn values(&self, name: &str) -> PyResult<Vec<f64>> {
         self.study.values(name).map(<[f64]>::to_vec).ok_or_else(|| {
             let names: Vec<_> = self.study.quantities.iter().map(|own| own.name.as_str()).collect();

@@ -337,7 +337,7 @@ def test_samples_and_events():
         vc.Material(vc.Measurements.creep([0.1, 1, 10, 100], [1e-6, 1.2e-6, 1.5e-6, 1.6e-6]).fit()),
         vc.Load.force(1.0, at=(1e-3, 0)),
         vc.LoadHistory.triangle(vc.Load.force(0), vc.Load.force(1), 2.0),
-        vc.Attraction.dugdale(0.05, greatest=1e5, width=1.0),
+        vc.Attraction.dugdale(0.05, max_traction=1e5, width=1.0),
         vc.InfluenceKernel.layer(GRID, vc.Layer.bonded_to_rigid(1e-3, 0.3)),
         vc.TemperatureHistory(vc.TimeTemperature.arrhenius(1e5, 300.0), [(0.0, 300.0), (1.0, 310.0)]),
         vc.ElasticStates.sphere(1e-2),

@@ -140,6 +140,7 @@ def test_identification():
         with pytest.raises(ValueError, match="E1.*E0, Einf, tau"):
             vc.Identification("zener", **{given: {"E1": 1.0}})
     assert [type(one) for one in zener.fit_each([curve, curve])] == [vc.Fit, vc.Fit]
+    assert fit["contact_point"] == fit["contact point"]
     assert (fit["tau"].scale, fit["contact point"].scale, fit["tau"].limit) == ("logarithm", "linear", None)
     # one of a list may be left as it is; a parameter is known or begins somewhere
     first, second = vc.Identification("zener", offset=[True, None]).fit_each([curve, curve])

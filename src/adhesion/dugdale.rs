@@ -31,13 +31,13 @@ impl Dugdale {
         Ok(Dugdale { scales: Scales::new(work, range)?, width: WIDTH })
     }
 
-    /// A law of the `work` of separation w \[J/m²\] and the `greatest` traction s(0) \[Pa\], with an end of width
+    /// A law of the `work` of separation w \[J/m²\] and the `maximum` traction s(0) \[Pa\], with an end of width
     /// b = 1/2 of the range.
     ///
     /// # Errors
     /// As [`Dugdale::new`].
-    pub fn of_traction(work: f64, greatest: f64) -> Result<Dugdale> {
-        Ok(Dugdale { scales: Scales::of_traction(work, greatest)?, width: WIDTH })
+    pub fn of_traction(work: f64, maximum: f64) -> Result<Dugdale> {
+        Ok(Dugdale { scales: Scales::of_traction(work, maximum)?, width: WIDTH })
     }
 
     /// Another width b of its end, over the range: at b = 2 it is

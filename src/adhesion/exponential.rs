@@ -23,12 +23,12 @@ impl ExponentialAttraction {
         Scales::new(work, range).map(ExponentialAttraction)
     }
 
-    /// A law of the `work` of separation w \[J/m²\] and the `greatest` traction s(0) \[Pa\].
+    /// A law of the `work` of separation w \[J/m²\] and the `maximum` traction s(0) \[Pa\].
     ///
     /// # Errors
     /// As [`ExponentialAttraction::new`].
-    pub fn of_traction(work: f64, greatest: f64) -> Result<ExponentialAttraction> {
-        Scales::of_traction(work, greatest).map(ExponentialAttraction)
+    pub fn of_traction(work: f64, maximum: f64) -> Result<ExponentialAttraction> {
+        Scales::of_traction(work, maximum).map(ExponentialAttraction)
     }
 }
 

@@ -22,12 +22,12 @@ impl LinearSoftening {
         Scales::new(work, range).map(LinearSoftening)
     }
 
-    /// A law of the `work` of separation w \[J/m²\] and the `greatest` traction s(0) \[Pa\].
+    /// A law of the `work` of separation w \[J/m²\] and the `maximum` traction s(0) \[Pa\].
     ///
     /// # Errors
     /// As [`LinearSoftening::new`].
-    pub fn of_traction(work: f64, greatest: f64) -> Result<LinearSoftening> {
-        Scales::of_traction(work, greatest).map(LinearSoftening)
+    pub fn of_traction(work: f64, maximum: f64) -> Result<LinearSoftening> {
+        Scales::of_traction(work, maximum).map(LinearSoftening)
     }
 
     /// 1 − h/2ρ, at least zero.

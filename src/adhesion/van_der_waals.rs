@@ -23,12 +23,12 @@ impl VanDerWaals {
         Scales::new(work, range).map(VanDerWaals)
     }
 
-    /// A law of the `work` of separation w \[J/m²\] and the `greatest` traction s(0) \[Pa\].
+    /// A law of the `work` of separation w \[J/m²\] and the `maximum` traction s(0) \[Pa\].
     ///
     /// # Errors
     /// As [`VanDerWaals::new`].
-    pub fn of_traction(work: f64, greatest: f64) -> Result<VanDerWaals> {
-        Scales::of_traction(work, greatest).map(VanDerWaals)
+    pub fn of_traction(work: f64, maximum: f64) -> Result<VanDerWaals> {
+        Scales::of_traction(work, maximum).map(VanDerWaals)
     }
 
     /// h₀/(h₀ + h).

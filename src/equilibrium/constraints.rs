@@ -74,11 +74,11 @@ pub(crate) fn below_full_contact(window: &Window, trial: &Trial, request: Reques
     };
     let rows = window.kernel.rows();
     let left = rows.sum(&trial.gap) / rows.len() as f64;
-    let greatest = approach + left;
+    let maximum = approach + left;
     if left > 0.0 {
         Ok(())
     } else {
-        Err(Error::Step(StepError::BeyondFullContact { time: request.time, approach, greatest }))
+        Err(Error::Step(StepError::BeyondFullContact { time: request.time, approach, maximum }))
     }
 }
 

@@ -103,7 +103,7 @@ bitflags! {
         /// carry it, too.
         const LONG_STEP = 1 << 17;
         /// The run has ended, and its approach or spring has never brought the bodies into contact: they touch at the
-        /// approach that equals the least gap, and a greater approach presses. Carried by the last step of a run.
+        /// approach that equals the minimum gap, and a greater approach presses. Carried by the last step of a run.
         const NO_CONTACT = 1 << 18;
         /// The attraction beyond the edge of the grid, which is not computed, would add more than 1e-3 of the force
         /// ([`Figures::beyond_edge`](crate::contact::Figures::beyond_edge)), or than

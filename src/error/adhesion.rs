@@ -11,7 +11,7 @@ pub enum AdhesionError {
 
     /// The mesh does not resolve the zone in which the attraction acts.
     #[error(
-        "the attraction acts over a zone of {cells:.2} cells at the edge of the contact, and at least {least} are \
+        "the attraction acts over a zone of {cells:.2} cells at the edge of the contact, and at least {minimum} are \
         needed: take cells of at most {} m, or a range of at least {} m (a longer range at the same work of \
         separation changes the pull-off force of an elastic body by little while Tabor's number stays above 3; on \
         a creeping body it stands for a slower pull)",
@@ -21,11 +21,11 @@ pub enum AdhesionError {
         /// Cells in the zone: E* at once over the steepest slope of the attraction, or over w/ρ² if that is more, and
         /// over the side of a cell.
         cells: f64,
-        /// Least number of cells.
-        least: f64,
+        /// Minimum number of cells.
+        minimum: f64,
         /// Maximum side of a cell that resolves the zone \[m\].
         spacing: f64,
-        /// Least range of the attraction that this mesh resolves \[m\].
+        /// Minimum range of the attraction that this mesh resolves \[m\].
         range: f64,
     },
 
@@ -96,7 +96,7 @@ pub enum AdhesionError {
     },
 
     /// The passes of a step have not found its state.
-    #[error("at t = {} s {passes} passes left a change of the traction of {change:.1e} of its greatest, where \
+    #[error("at t = {} s {passes} passes left a change of the traction of {change:.1e} of its maximum, where \
         {tolerance:.1e} is allowed: take a shorter step", rounded(*.time, TIME))]
     NotConverged {
         /// End of the step \[s\].

@@ -66,15 +66,15 @@ pub enum KernelError {
     /// The operator of these influence coefficients is not positive definite: no contact on such a body is stable.
     /// Check the sign of the coefficients, and that near cells influence each other more than distant ones.
     #[error(
-        "the influence coefficients are not positive definite: the least eigenvalue found is {} m, the greatest \
+        "the influence coefficients are not positive definite: the minimum eigenvalue found is {} m, the maximum \
         {} m; check their signs, and that near cells influence each other more than distant ones",
-        rounded(*.least, 3), rounded(*.most, 3)
+        rounded(*.minimum, 3), rounded(*.maximum, 3)
     )]
     NotPositiveDefinite {
-        /// Estimate of the least eigenvalue \[m\].
-        least: f64,
-        /// Estimate of the largest \[m\].
-        most: f64,
+        /// Estimate of the minimum eigenvalue \[m\].
+        minimum: f64,
+        /// Estimate of the maximum one \[m\].
+        maximum: f64,
     },
 
     /// The stress below the surface can be computed for half-spaces, half-spaces periodic along both axes, and line

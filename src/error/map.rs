@@ -26,13 +26,13 @@ pub enum MapError {
     #[error(
         "shortest wavelength = {} m is not allowed: it must be at least two cells of the grid, which are {} m \
         along {axis}: take a longer wavelength, or {cells} cells along \
-        {axis}", rounded(*.shortest, 4), rounded(*.least, 4)
+        {axis}", rounded(*.shortest, 4), rounded(*.minimum, 4)
     )]
     TooFine {
         /// The shortest wavelength \[m\].
         shortest: f64,
         /// The length of two cells \[m\].
-        least: f64,
+        minimum: f64,
         /// The axis of the cells.
         axis: Axis,
         /// Number of cells along the axis that resolves the wavelength.

@@ -52,14 +52,14 @@ pub enum StepError {
     #[error(
         "at t = {time} s the approach {} m is not below {} m, that of full contact, which no pressure can exceed \
         on a periodic body: prescribe the \
-        force", rounded(*.approach, 5), rounded(*.greatest, 5), time = rounded(*.time, TIME))]
+        force", rounded(*.approach, 5), rounded(*.maximum, 5), time = rounded(*.time, TIME))]
     BeyondFullContact {
         /// End of the step \[s\].
         time: f64,
         /// The approach prescribed \[m\].
         approach: f64,
         /// The approach of full contact \[m\].
-        greatest: f64,
+        maximum: f64,
     },
 
     /// The bodies are pressed into a layer on a rigid base by its whole thickness or more: the base would be touched,

@@ -127,7 +127,7 @@ impl InfluenceKernel {
     ///
     /// # Errors
     /// If a coefficient is not finite, or beyond ±1e100 m, or differs from the coefficients of its mirror images, or
-    /// if K is not positive definite: unless its spectrum is positive, its least eigenvalue is estimated by the
+    /// if K is not positive definite: unless its spectrum is positive, its minimum eigenvalue is estimated by the
     /// Lanczos method, which detects any far below zero. If there is not enough memory for coefficients and spectrum.
     pub fn from_coefficients(grid: &Grid, coefficient: impl Fn(isize, isize) -> f64) -> Result<InfluenceKernel> {
         let [n1, n2] = grid.cells();
@@ -164,10 +164,10 @@ impl InfluenceKernel {
                 "the check that a kernel is positive definite",
                 layout.workspace_bytes(None) + 3 * coefficients,
             )?;
-            let (least, most) = least_eigenvalue(whole, grid.len());
-            let positive = least > -ROUNDING * most;
+            let (minimum, maximum) = least_eigenvalue(whole, grid.len());
+            let positive = minimum > -ROUNDING * maximum;
             if !positive {
-                return Err(KernelError::NotPositiveDefinite { least, most }.into());
+                return Err(KernelError::NotPositiveDefinite { minimum, maximum }.into());
             }
         }
         Ok(kernel)

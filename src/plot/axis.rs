@@ -132,7 +132,7 @@ fn shared_power((label, factor): (String, f64), greatest: f64) -> (String, f64) 
 }
 
 /// The least of 1, 2 and 5 times a power of ten that is not below `least`.
-fn round_step(least: f64) -> f64 {
+pub(super) fn round_step(least: f64) -> f64 {
     let exponent = least.log10().floor();
     let power = 10_f64.powf(exponent);
     let multiple = [1.0, 2.0, 5.0].into_iter().find(|m| m * power >= 0.999_999 * least).unwrap_or(10.0);

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::error::{Error, Result};
+use crate::plot::axis::round_step;
 use crate::plot::color_bar::{self, BAR_WIDTH};
 use crate::plot::curve::Curve;
 use crate::plot::frame::width_beside;
@@ -43,7 +44,7 @@ impl Scale {
 /// A chart of curves over two axes.
 ///
 /// Points with a coordinate that is not finite, or not positive on a logarithmic axis, are left out and interrupt the
-/// line.
+/// line. A linear axis of positive values begins at zero unless that makes it more than twice as long.
 ///
 /// ```
 /// use viscocontact::plot::{COLORS, Chart, Legend, Quantity, Style};
@@ -160,14 +161,8 @@ impl Chart {
         legend::draw(&mut canvas, &entries, self.legend, &frame, &self.points(&frame));
         if let Some(bar) = &self.bar {
             let color = |at: f64| Color::on_scale(LIGHTEST * at);
-            color_bar::draw(
-                &mut canvas,
-                frame.right,
-                [TOP, frame.bottom],
-                &bar.axis(frame.bottom - TOP)?,
-                color,
-                [false; 2],
-            );
+            let axis = bar.axis(frame.bottom - TOP)?;
+            color_bar::draw(&mut canvas, frame.right, [TOP, frame.bottom], &axis, color, [false; 2]);
         }
         Ok(Picture::new(canvas))
     }
@@ -222,8 +217,8 @@ impl Chart {
         let (low, high) = (check(field, low)?, check(field, high)?);
         if logarithmic {
             let [low, high] = if high < 10.0 * low {
-                // whole decades and a little more: otherwise no tick would have a number
-                [0.99 * 10_f64.powf((low / 1.1).log10().floor()), 1.01 * 10_f64.powf((high * 1.1).log10().ceil())]
+                // from number to number, which else might lie outside
+                [0.99 / round_step(1.1 / low), 1.01 * round_step(1.1 * high)]
             } else {
                 [low / 1.5, high * 1.5]
             };
@@ -233,7 +228,8 @@ impl Chart {
         // values that are all equal get a range around them
         let span = (high - low).max(1e-9 * greatest);
         let margin = 0.04 * if span > 0.0 { span } else { 1.0 };
-        let (low, high) = (if low == 0.0 { 0.0 } else { low - margin }, high + margin);
+        // zero is shown where it makes the axis at most twice as long
+        let (low, high) = (if 0.0 <= low && low < 0.5 * high { 0.0 } else { low - margin }, high + margin);
         Ok(DrawnAxis::linear(quantity, greatest, [low, high + above * (high - low)], room))
     }
 }

@@ -45,7 +45,7 @@ pub struct Map {
     pub quantity: Quantity,
     /// The axes (default: x1 and x2 in metres, shown with a suitable prefix).
     pub axes: [Quantity; 2],
-    /// Ends of the colour scale, in the unit of the values (default: the least and the largest finite value). Values
+    /// Ends of the colour scale, in the unit of the values (default: the smallest and the largest finite value). Values
     /// outside have the colour of the nearer end, and the colour bar has a triangle at that end.
     pub range: [f64; 2],
     /// The colours of the scale (default: sequential; [`Map::traction`] has one that diverges about zero).
@@ -246,7 +246,7 @@ impl Map {
     }
 }
 
-/// The least and the largest finite value; +∞ and −∞ if there is none.
+/// The smallest and the largest finite value; +∞ and −∞ if there is none.
 pub(super) fn extremes<'a>(values: impl IntoIterator<Item = &'a f64>) -> [f64; 2] {
     let finite = values.into_iter().filter(|value| value.is_finite());
     finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(*value), high.max(*value)])

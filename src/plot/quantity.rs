@@ -39,11 +39,11 @@ impl Quantity {
         Quantity { name: name.into(), unit: Some(unit.into()) }
     }
 
-    /// The label for values up to `greatest` in magnitude, in SI, and the factor from SI to the unit of the label. If
-    /// `greatest` is zero or not finite, the unit has no prefix.
-    pub fn shown(&self, greatest: f64) -> (String, f64) {
+    /// The label for values up to `maximum` in magnitude, in SI, and the factor from SI to the unit of the label. If
+    /// `maximum` is zero or not finite, the unit has no prefix.
+    pub fn shown(&self, maximum: f64) -> (String, f64) {
         let Some(unit) = &self.unit else { return (self.name.clone(), 1.0) };
-        let (prefix, factor) = prefix(unit, greatest.abs()).unwrap_or(("", 1.0));
+        let (prefix, factor) = prefix(unit, maximum.abs()).unwrap_or(("", 1.0));
         (format!("{} [{prefix}{unit}]", self.name), factor)
     }
 }

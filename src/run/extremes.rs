@@ -34,7 +34,7 @@ impl<C: Contact> Run<'_, C> {
     /// let mut run = contact.follow(&drawn_off, Stepping::adaptive(1.0e-2), 0.1);
     /// let (mut greatest, mut at_ends) = (0.0_f64, 0.0_f64);
     /// while let Some(report) = run.next_step()? {
-    ///     let (_, pull) = run.greatest_within_step(|contact| -contact.force())?;
+    ///     let (_, pull) = run.max_within_step(|contact| -contact.force())?;
     ///     (greatest, at_ends) = (greatest.max(pull), at_ends.max(-report.force));
     /// }
     /// assert!(greatest > at_ends);
@@ -43,7 +43,7 @@ impl<C: Contact> Run<'_, C> {
     ///
     /// # Errors
     /// If the quantity is not finite, or as [`Run::within_step`]. Before the first step it is that of the contact.
-    pub fn greatest_within_step(&self, quantity: impl Fn(&C) -> f64) -> Result<(f64, f64)> {
+    pub fn max_within_step(&self, quantity: impl Fn(&C) -> f64) -> Result<(f64, f64)> {
         let end = self.contact.time();
         let look = |time: f64| {
             let value = if time == end { quantity(&self.contact) } else { quantity(&self.sample_within_step(time)?.0) };

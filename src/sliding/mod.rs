@@ -141,7 +141,7 @@ impl SteadySliding {
         let mean = heights.iter().sum::<f64>() / heights.len() as f64;
         if !free.translation && mean <= 0.0 && ground.kernel.mean_is_held() {
             let approach = lowered.approach + datum;
-            return Err(Error::Step(StepError::BeyondFullContact { time: 0.0, approach, greatest: approach + mean }));
+            return Err(Error::Step(StepError::BeyondFullContact { time: 0.0, approach, maximum: approach + mean }));
         }
         let cancelled = self.cancelled.as_deref();
         let problem = SlidingProblem { grid: &grid, gap: &heights, free, tolerance, cancelled };

@@ -68,7 +68,7 @@ pub struct ElasticStates {
     pub(crate) tilt: [Tilt; 2],
     /// Poisson's ratio of a layer, on which its elastic states depend.
     pub(crate) poisson: Option<f64>,
-    /// Greatest error that a state in the middle of two others showed, less the errors that states added later removed.
+    /// Maximum error that a state in the middle of two others showed, less the errors that states added later removed.
     pub(crate) error: f64,
     /// Below this level the elastic contact does not only grow: these levels are held or free as a whole.
     pub(crate) first_level: f64,
@@ -168,7 +168,7 @@ impl ElasticStates {
         &self.states
     }
 
-    /// Greatest error of the depth δ between two states, relative to √(δ δ_last), measured by the states in the middle
+    /// Maximum error of the depth δ between two states, relative to √(δ δ_last), measured by the states in the middle
     /// of two others. Infinite if the sweep ended before it measured between all states of its first pass.
     pub fn interpolation_error(&self) -> f64 {
         self.error
@@ -190,7 +190,7 @@ impl ElasticStates {
         load_point(self.tilt)
     }
 
-    /// Distance from the load point to the edge of the greatest contact \[m\], at most; 0 where no tilt is free.
+    /// Distance from the load point to the edge of the largest contact \[m\], at most; 0 where no tilt is free.
     pub(super) fn reach(&self) -> f64 {
         let at = self.load_point();
         let is_free = self.tilt.iter().any(|tilt| matches!(tilt, Tilt::Free { .. }));

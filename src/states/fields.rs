@@ -21,7 +21,7 @@ impl StatesContact {
     /// All fields to an `accuracy`, the error of the pressure in L1 over the force: from elastic contacts at a few
     /// levels, which are doubled until pressure and displacement change by less. They are about 10 contacts for 1e-2
     /// and 20 for 1e-3, each some 5 convolutions from the one before, and 12 bytes of memory for each of its cells in
-    /// contact. The L2 error is about twice as large, relative to the field, and the error of the greatest pressure
+    /// contact. The L2 error is about twice as large, relative to the field, and the error of the maximum pressure
     /// five times. An accuracy of 0 takes every group of levels.
     /// The steps that were taken count as exact: a run has
     /// [`Run::fields_to`](crate::run::Run::fields_to).

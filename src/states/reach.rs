@@ -38,8 +38,8 @@ pub enum Reach {
 impl Reach {
     /// What a run of this material along a load history to the time `until` \[s\] needs.
     ///
-    /// Under forces that is the greatest level of the run, which does not depend on the shape, and under approaches
-    /// the greatest approach. Springs, and histories of several kinds of load, take the greatest load of each kind on
+    /// Under forces that is the maximum level of the run, which does not depend on the shape, and under approaches
+    /// the maximum approach. Springs, and histories of several kinds of load, take the maximum load of each kind on
     /// an elastic body of the last contact compliance. A spring, or a force among other loads, may need more than
     /// that; a step beyond the sweep is refused then. Loads are sampled at 4097 even times and at both sides of all
     /// corners.

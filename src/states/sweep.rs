@@ -41,7 +41,7 @@ const LEAST_LEVEL: f64 = 1e-12;
 const LINEAR_LEVEL: f64 = 1e-6;
 /// Levels closer than by this factor have no state between them.
 const FINEST: f64 = 1.001;
-/// The error of a pressure counts relative to this part of the greatest load at least.
+/// The error of a pressure counts relative to this part of the maximum load at least.
 const LEAST_LOAD: f64 = 0.01;
 /// The error in the middle of two states is so much below the accuracy: elsewhere between them it may be greater.
 const SAFETY: f64 = 2.0;
@@ -76,7 +76,7 @@ impl Sweep {
         self
     }
 
-    /// Error of the depth δ between two states, relative to √(δ δ_last), with δ_last the greatest depth (default:
+    /// Error of the depth δ between two states, relative to √(δ δ_last), with δ_last the maximum depth (default:
     /// 1e-4). Where [pressures are kept](Sweep::keep_pressures), the error of the pressure in L1, over the load or a
     /// hundredth of the greatest, is no greater: some 20 states a decade of the level for 1e-2, and 80 for 1e-3.
     pub fn accuracy(mut self, accuracy: f64) -> Sweep {

@@ -17,7 +17,7 @@ pub enum Observable {
     /// The contact area.
     ContactArea,
     /// The maximum pressure of the run. It does not converge under edges and tips, where it is infinite.
-    GreatestPressure,
+    MaxPressure,
 }
 
 /// How an observable is read.
@@ -46,14 +46,14 @@ impl fmt::Debug for Observed<'_> {
 
 impl Observable {
     pub(super) const ALL: [Observable; 4] =
-        [Observable::Approach, Observable::Force, Observable::ContactArea, Observable::GreatestPressure];
+        [Observable::Approach, Observable::Force, Observable::ContactArea, Observable::MaxPressure];
 
     pub(super) fn name(self) -> &'static str {
         match self {
             Observable::Approach => "approach",
             Observable::Force => "force",
             Observable::ContactArea => "contact area",
-            Observable::GreatestPressure => "maximum pressure",
+            Observable::MaxPressure => "maximum pressure",
         }
     }
 
@@ -62,7 +62,7 @@ impl Observable {
             Observable::Approach => Reading::Value(Box::new(|fields| fields.approach())),
             Observable::Force => Reading::Value(Box::new(|fields| fields.force())),
             Observable::ContactArea => Reading::Value(Box::new(|fields| fields.contact_area())),
-            Observable::GreatestPressure => Reading::Greatest(Box::new(|fields| fields.max_pressure())),
+            Observable::MaxPressure => Reading::Greatest(Box::new(|fields| fields.max_pressure())),
         };
         Observed { name: self.name().to_owned(), is_asked, reading }
     }

@@ -104,7 +104,8 @@ fn tractions_diverge_about_zero() {
 fn families_are_coloured_by_their_parameter() {
     let drawn = |parameters: [f64; 3]| {
         let mut chart = Chart::new("", "x", "y", Legend::UpperLeft);
-        let level = |value: f64| 10.0 + value.log10();
+        // far from zero, where the axis would begin otherwise
+        let level = |value: f64| 100.0 + value.log10();
         let levels = parameters.map(|value| (value, vec![(0.0, level(value)), (1.0, level(value))]));
         chart.add_family(Quantity::new("speed", "m/s"), Style::Line, levels.to_vec());
         let picture = chart.draw().unwrap();
@@ -132,6 +133,27 @@ fn families_are_coloured_by_their_parameter() {
     chart.add_family("p", Style::Line, vec![(1.0, vec![(0.0, 0.0)]), (1e101, vec![(1.0, 1.0)])]);
     assert_eq!(field(chart.draw()), "parameter of a family of curves");
     assert_eq!([measure(1.8e-7, "m/s"), measure(0.4e-6, "m²")], ["180 nm/s", "0.4 mm²"]);
+}
+
+#[test]
+fn axes_begin_at_zero_where_it_is_near_and_at_a_number_where_there_are_few() {
+    // the places of two dots along the vertical axis, which lies in the rows from 715 to 56
+    let places = |scale: Scale, values: [f64; 2]| {
+        let mut chart = Chart::new("", "x", "y", Legend::UpperLeft);
+        chart.scale = scale;
+        chart.add("", COLORS[0], Style::Dots, values.map(|value| (value, value)).to_vec());
+        let (_, [first, last]) = bounds(pixels(&chart.draw().unwrap()), &[BLUE]);
+        [last[1] - 5.0, first[1] + 5.0].map(|row| (715.0 - row) / (715.0 - 56.0))
+    };
+    let decade = (202.0_f64 / 19.8).ln();
+    for (scale, values, exact) in [
+        (Scale::Linear, [1.0, 3.0], [1.0 / 3.08, 3.0 / 3.08]),
+        (Scale::Linear, [2.0, 3.0], [0.04 / 1.08, 1.04 / 1.08]),
+        (Scale::LogLog, [30.0, 108.0], [30.0, 108.0].map(|value: f64| (value / 19.8).ln() / decade)),
+    ] {
+        let found = places(scale, values);
+        assert!((0..2).all(|k| (found[k] - exact[k]).abs() < 0.01), "{scale:?} {values:?}: {found:?} {exact:?}");
+    }
 }
 
 #[test]

@@ -81,7 +81,7 @@ fn influences_that_no_body_has_are_refused() {
     // the neighbours sink in more than the loaded cell
     let unstable = coefficient(&|i, j| if (i, j) == (0, 0) { 1.0 } else { 2.0 / (1 + i * i + j * j) as f64 });
     assert!(
-        matches!(unstable, Error::Kernel(KernelError::NotPositiveDefinite { least, .. }) if least < -0.1),
+        matches!(unstable, Error::Kernel(KernelError::NotPositiveDefinite { minimum, .. }) if minimum < -0.1),
         "{unstable}"
     );
     // positive though its embedding in a period is not: the half-space, which many a grid has

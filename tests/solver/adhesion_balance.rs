@@ -148,7 +148,7 @@ fn pull_off(contact: &ViscoelasticContact, speed: f64, way: f64, tolerance: f64,
         // the stops of the reference show the peak
         let pull = |contact: &ViscoelasticContact| -contact.force();
         let at_end = pull(run.contact());
-        let found = if every.is_some() { at_end } else { run.greatest_within_step(pull).unwrap().1 };
+        let found = if every.is_some() { at_end } else { run.max_within_step(pull).unwrap().1 };
         assert!(found >= at_end);
         greatest = greatest.max(found);
     }

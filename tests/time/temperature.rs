@@ -260,7 +260,7 @@ fn stress_of_a_changing_poisson_ratio_is_that_of_the_reduced_time() {
             contact.step(dt * factor, Load::force(force)).unwrap();
             history.record(&contact).unwrap();
         }
-        history.stress(&contact).unwrap().greatest(&[0.2e-3, 0.4e-3, 0.6e-3, 0.8e-3], Stress::von_mises).unwrap().value
+        history.stress(&contact).unwrap().maximum(&[0.2e-3, 0.4e-3, 0.6e-3, 0.8e-3], Stress::von_mises).unwrap().value
     });
     close(peaks[0], peaks[1], 1e-9, "von Mises stress");
 }

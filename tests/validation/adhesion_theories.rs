@@ -18,14 +18,14 @@ fn a_sphere_of_short_range() {
     close(sphere.radius_at_pull_off(), 1.52323695, 1e-8);
     for (radius, force, approach) in [
         (sphere.radius_at_pull_off(), -1.5 * PI, -0.773416932),
-        (sphere.radius_at_least_approach(), -5.0 / 6.0 * PI, -1.60877205),
+        (sphere.radius_at_min_approach(), -5.0 / 6.0 * PI, -1.60877205),
         (3.0, 9.95035484, 4.65839247),
     ] {
         let state = sphere.state(radius);
         close(state[0], force, 1e-8);
         close(state[1], approach, 1e-8);
     }
-    close(sphere.radius_at_least_approach(), 0.732295944, 1e-8);
+    close(sphere.radius_at_min_approach(), 0.732295944, 1e-8);
     let [force, approach] = sphere.state(2.41798793);
     assert!(force.abs() < 1e-7);
     close(approach, 1.94888854, 1e-8);

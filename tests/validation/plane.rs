@@ -59,8 +59,8 @@ fn a_wavy_surface_in_full_contact_is_westergaards() {
     assert_abs_diff_eq!(contact.approach() / 1e-3, 1.0, epsilon = 1e-9);
     assert_eq!(contact.contact_area(), 1.0);
     let error = contact.step(0.0, Load::approach(1.1e-3)).unwrap_err();
-    let Error::Step(StepError::BeyondFullContact { greatest, .. }) = error else { panic!("{error}") };
-    assert_abs_diff_eq!(greatest / 1e-3, 1.0, epsilon = 1e-9);
+    let Error::Step(StepError::BeyondFullContact { maximum, .. }) = error else { panic!("{error}") };
+    assert_abs_diff_eq!(maximum / 1e-3, 1.0, epsilon = 1e-9);
     contact.step(0.0, Load::approach(0.5e-3)).unwrap();
     assert!(contact.contact_cells() < 64);
     let error = contact.step(0.0, Load::eccentric_force(1.0, [0.1, 0.0])).unwrap_err();

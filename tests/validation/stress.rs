@@ -37,7 +37,7 @@ fn a_ball_yields_where_hertz_says() {
     for (nu, value, depth) in [(0.3, 0.620_041, 0.480_87), (0.5, 0.532_697, 0.547_87)] {
         let (contact, hertz) = ball(256, nu);
         let (a, peak) = (hertz.contact_radius, hertz.pressure(0.0));
-        let found = contact.fields().stress().unwrap().greatest(&depths(12, 1.2 * a), Stress::von_mises).unwrap();
+        let found = contact.fields().stress().unwrap().maximum(&depths(12, 1.2 * a), Stress::von_mises).unwrap();
         let error = found.value / (value * peak) - 1.0;
         let [x1, x2, x3] = found.position.map(|x| x / a);
         println!("ν = {nu}: von Mises {error:.1e}, depth {:.1e} a, aside {x1:.1e} {x2:.1e}", x3 - depth);
@@ -45,7 +45,7 @@ fn a_ball_yields_where_hertz_says() {
         assert!((x3 - depth).abs() < 1e-4 && x1.abs() < 1e-6 && x2.abs() < 1e-6, "{nu}: {:?}", found.position);
         assert!(!found.at_end_of_depths && found.stress.von_mises() == found.value);
         // on the axis two principal stresses are equal: Tresca is von Mises, and of the same place
-        let tresca = contact.fields().stress().unwrap().greatest(&depths(12, 1.2 * a), Stress::tresca).unwrap();
+        let tresca = contact.fields().stress().unwrap().maximum(&depths(12, 1.2 * a), Stress::tresca).unwrap();
         assert!((tresca.value / found.value - 1.0).abs() < 1e-6, "{}", tresca.value);
     }
 }
@@ -59,7 +59,7 @@ fn the_greatest_stress_converges() {
             .fields()
             .stress()
             .unwrap()
-            .greatest(&depths(12, 1.2 * hertz.contact_radius), Stress::von_mises)
+            .maximum(&depths(12, 1.2 * hertz.contact_radius), Stress::von_mises)
             .unwrap();
         (found.value / (0.620_041 * hertz.pressure(0.0)) - 1.0).abs()
     };
@@ -106,7 +106,7 @@ fn a_cylinder_yields_where_hertz_says() {
         let mut contact = builder_of(&shape, grid, elastic(nu)).kernel(kernel).build().unwrap();
         contact.step(0.0, Load::force(per_length)).unwrap();
         let stress = contact.fields().stress().unwrap();
-        let found = stress.greatest(&depths(12, 1.5 * a), Stress::tresca).unwrap();
+        let found = stress.maximum(&depths(12, 1.5 * a), Stress::tresca).unwrap();
         let error = 0.5 * found.value / (0.300_283 * peak) - 1.0;
         assert!(error.abs() < 1e-3, "{error:e}");
         let [depth, aside] = [found.position[2] / a, found.position[axis] / a];
@@ -167,7 +167,7 @@ fn stress_does_not_depend_on_the_window() {
             let pairs = a.components().into_iter().zip(b.components());
             pairs.for_each(|(a, b)| assert!((a - b).abs() < 1e-7 * peak, "{touched} cells: {a:e} {b:e}"));
         }
-        let [a, b] = [one, other].map(|stress| stress.greatest(&depths, Stress::von_mises).unwrap().value);
+        let [a, b] = [one, other].map(|stress| stress.maximum(&depths, Stress::von_mises).unwrap().value);
         assert!((a / b - 1.0).abs() < 1e-7, "{a:e} {b:e}");
     }
     assert!(10 * sizes[0] < sizes[4] && sizes[4] < 96 * 96 / 4, "{sizes:?}");

@@ -53,7 +53,7 @@ fn held_spheres_are_as_accurate_as_asked() {
         let exact = GrowingSphere::step(RADIUS, &material, 1.0).unwrap();
         let mut found = Vec::new();
         for accuracy in PRESETS {
-            let study = study(&sphere, &material, &load, until).accuracy(accuracy).ask(Observable::GreatestPressure);
+            let study = study(&sphere, &material, &load, until).accuracy(accuracy).ask(Observable::MaxPressure);
             let study = study.run().unwrap();
             check(name, &study, |t| [exact.approach(t), exact.pressure(0.0, t)]);
             found.push(format!("{}² cells and {} steps", study.grid().cells()[0], study.times().len()));
@@ -120,7 +120,7 @@ fn punches_converge_slowly_and_their_pressure_never() {
     check("punch", &coarse, exact);
     assert_eq!(coarse.measured("maximum pressure").unwrap().error(), None);
     assert!(coarse.to_string().contains("maximum pressure: not converged"));
-    let asked = study_of(3e-2).ask(Observable::GreatestPressure).run().unwrap();
+    let asked = study_of(3e-2).ask(Observable::MaxPressure).run().unwrap();
     assert_eq!(asked.ending, Ending::NoConvergence);
     // first order: a hundred times the cells a side for a hundredth of the error
     let (fine, cost) = (study_of(1e-5).run().unwrap(), coarse.cost_for(Accuracy::new(1e-5).unwrap()).unwrap());

@@ -46,7 +46,7 @@ impl Curve {
         let (drive, force) = (self.experiment.protocol.drive(), self.force());
         let (points, [first, last]) = (force.len(), range(drive));
         if points < LEAST_POINTS {
-            return Err(Error::ShortCurve { points, least: LEAST_POINTS });
+            return Err(Error::ShortCurve { points, minimum: LEAST_POINTS });
         }
         if is_flat(force) {
             return Err(Error::NoContact { curve: 0 });

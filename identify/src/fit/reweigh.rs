@@ -1,7 +1,7 @@
 //! The noise of each curve, from the residuals of a fit.
 
 use faer::{Mat, Side};
-use viscocontact::numeric::{LeastSquares, least};
+use viscocontact::numeric::{LeastSquares, minimum};
 
 use crate::bounds::inverse_gram;
 use crate::error::Result;
@@ -128,7 +128,7 @@ fn correlation(residuals: &[f64], jacobian: &Mat<f64>, first: usize) -> [f64; 2]
         .map(|k| {
             let (memory, mut columns) = (MEMORY * k as f64, columns.clone());
             columns.iter_mut().for_each(|column| difference(column, memory));
-            let phi = least(CORRELATIONS[0], CORRELATIONS[1], TRIED, |phi| unlikelihood(&columns, phi));
+            let phi = minimum(CORRELATIONS[0], CORRELATIONS[1], TRIED, |phi| unlikelihood(&columns, phi));
             (unlikelihood(&columns, phi) + if memory > 0.0 { CLEARLY } else { 0.0 }, [phi, memory])
         })
         .collect();

@@ -32,7 +32,7 @@ impl Dmt {
         [4.0 * modulus * a.powi(3) / (3.0 * length) + self.pull_off_force(), a * a / length]
     }
 
-    /// The least force, −2π w R \[N\].
+    /// The minimum force, −2π w R \[N\].
     pub fn pull_off_force(&self) -> f64 {
         -2.0 * PI * self.0.work * self.0.length
     }

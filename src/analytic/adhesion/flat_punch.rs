@@ -25,13 +25,13 @@ impl AdhesivePunch {
         Bodies::new("punch radius", radius, modulus, work).map(AdhesivePunch)
     }
 
-    /// The least force, −√(8π w E* a³) \[N\].
+    /// The minimum force, −√(8π w E* a³) \[N\].
     pub fn pull_off_force(&self) -> f64 {
         let Bodies { length, modulus, work } = self.0;
         -(8.0 * PI * work * modulus * length.powi(3)).sqrt()
     }
 
-    /// The approach at the least force, −√(2π w a/E*) \[m\].
+    /// The approach at the minimum force, −√(2π w a/E*) \[m\].
     pub fn approach_at_pull_off(&self) -> f64 {
         let Bodies { length, modulus, work } = self.0;
         -(2.0 * PI * work * length / modulus).sqrt()

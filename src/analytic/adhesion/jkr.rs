@@ -35,20 +35,20 @@ impl Jkr {
         [force, a * a / length - (2.0 * PI * work * a / modulus).sqrt()]
     }
 
-    /// The least force, −(3/2)π w R: a greater pull separates the bodies \[N\].
+    /// The minimum force, −(3/2)π w R: a greater pull separates the bodies \[N\].
     pub fn pull_off_force(&self) -> f64 {
         -1.5 * PI * self.0.work * self.0.length
     }
 
-    /// The contact radius at the least force \[m\].
+    /// The contact radius at the minimum force \[m\].
     pub fn radius_at_pull_off(&self) -> f64 {
         let Bodies { length, modulus, work } = self.0;
         (1.125 * PI * work * length * length / modulus).cbrt()
     }
 
-    /// The contact radius at the least approach, where the force is −(5/6)π w R: a contact of given approach
+    /// The contact radius at the minimum approach, where the force is −(5/6)π w R: a contact of given approach
     /// separates there \[m\].
-    pub fn radius_at_least_approach(&self) -> f64 {
+    pub fn radius_at_min_approach(&self) -> f64 {
         self.radius_at_pull_off() / 9f64.cbrt()
     }
 }

@@ -33,13 +33,13 @@ impl AdhesiveCylinder {
         0.25 * PI * modulus * a * a / length - (2.0 * PI * work * modulus * a).sqrt()
     }
 
-    /// The half-width at the least force, (2w R²/πE*)^⅓ \[m\].
+    /// The half-width at the minimum force, (2w R²/πE*)^⅓ \[m\].
     pub fn width_at_pull_off(&self) -> f64 {
         let Bodies { length, modulus, work } = self.0;
         (2.0 * work * length * length / (PI * modulus)).cbrt()
     }
 
-    /// The least force \[N/m\].
+    /// The minimum force \[N/m\].
     pub fn pull_off_force(&self) -> f64 {
         self.force(self.width_at_pull_off())
     }

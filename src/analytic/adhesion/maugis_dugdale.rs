@@ -57,7 +57,7 @@ impl MaugisDugdale {
         [force * found[0], approach * found[1]]
     }
 
-    /// The least force \[N\], and the contact radius there \[m\].
+    /// The minimum force \[N\], and the contact radius there \[m\].
     pub fn pull_off(&self) -> [f64; 2] {
         let [unit, force, _] = self.units();
         // the force has one minimum in the radius, or its least value at radius zero

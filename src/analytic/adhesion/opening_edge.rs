@@ -139,7 +139,7 @@ impl OpeningEdge {
     pub fn pull_off(&self, radius: f64, approach: f64, speed: f64) -> Result<PullOff> {
         let sphere = Jkr::new(radius, 1.0 / self.relaxed, self.work)?;
         positive("speed", speed)?;
-        let least = sphere.radius_at_least_approach();
+        let least = sphere.radius_at_min_approach();
         let [_, farthest] = sphere.state(least);
         within("approach", approach, approach > farthest, "above the one at which the relaxed contact separates")?;
         let most = 4.0 * (least + (radius * approach.abs()).sqrt());

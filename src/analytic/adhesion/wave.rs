@@ -46,7 +46,7 @@ impl AdhesiveWave {
     }
 
     /// The half-width of the contacts at [`AdhesiveWave::pull_off_pressure`] \[m\]; NaN for α > 1.065, where isolated
-    /// contacts have no least mean pressure.
+    /// contacts have no minimum mean pressure.
     pub fn width_at_pull_off(&self) -> f64 {
         // the slope vanishes where sin 2ψ √tan ψ cos² ψ = α/2: at the minimum, and beyond the greatest left side at a
         // maximum
@@ -59,7 +59,7 @@ impl AdhesiveWave {
         self.wavelength / PI * bisect(0.0, steepest, 60, |angle| steepness(angle) < wanted)[1]
     }
 
-    /// The least mean pressure \[Pa\] of isolated contacts.
+    /// The minimum mean pressure \[Pa\] of isolated contacts.
     pub fn pull_off_pressure(&self) -> f64 {
         self.mean_pressure(self.width_at_pull_off())
     }

@@ -34,8 +34,8 @@ use crate::{Grid, memory};
 ///     history.record(&contact)?; // after every step
 /// }
 /// let stress = history.stress(&contact)?;
-/// let greatest = stress.greatest(&[0.1e-3, 0.2e-3, 0.3e-3, 0.4e-3], Stress::von_mises)?;
-/// assert!(greatest.value > 0.5 * contact.fields().max_pressure());
+/// let peak = stress.maximum(&[0.1e-3, 0.2e-3, 0.3e-3, 0.4e-3], Stress::von_mises)?;
+/// assert!(peak.value > 0.5 * contact.fields().max_pressure());
 /// # Ok::<(), Error>(())
 /// ```
 #[derive(Debug, Clone)]

@@ -1,6 +1,6 @@
 //! The stress below the surface of a half-space.
 
-mod greatest;
+mod maximum;
 mod of_fields;
 mod plane;
 mod rectangle;
@@ -8,7 +8,7 @@ mod section;
 mod tensor;
 mod waves;
 
-pub use greatest::StressPeak;
+pub use maximum::StressPeak;
 pub use section::{StressSection, StressVolume};
 pub use tensor::Stress;
 
@@ -74,11 +74,11 @@ const ENDLESS: f64 = 1e60;
 /// contact.step(0.0, Load::force(0.5))?;
 /// let stress = contact.fields().stress()?;
 /// let depths: Vec<f64> = (1..=20).map(|k| f64::from(k) * 0.05e-3).collect();
-/// let greatest = stress.greatest(&depths, Stress::von_mises)?;
+/// let peak = stress.maximum(&depths, Stress::von_mises)?;
 /// // ν = ½: 0.5327 p0 at 0.548 a below the centre
 /// let hertz = viscocontact::analytic::Hertz::new(10.0e-3, 4.0e6, 0.5)?;
-/// assert!((greatest.value / hertz.pressure(0.0) - 0.5327).abs() < 2.0e-3);
-/// assert!((greatest.position[2] / hertz.contact_radius - 0.548).abs() < 5.0e-3);
+/// assert!((peak.value / hertz.pressure(0.0) - 0.5327).abs() < 2.0e-3);
+/// assert!((peak.position[2] / hertz.contact_radius - 0.548).abs() < 5.0e-3);
 /// # Ok::<(), Error>(())
 /// ```
 #[derive(Debug, Clone)]
@@ -87,7 +87,7 @@ pub struct SubsurfaceStress {
     body: HalfSpace,
     sources: Vec<Source>,
     transform: Plane,
-    least_depth: f64,
+    min_depth: f64,
 }
 
 /// A field that acts like a pressure.
@@ -173,8 +173,8 @@ impl SubsurfaceStress {
         let sides = grid.spacing();
         let resolved = (0..2).filter(|&axis| grid.cells()[axis] > 1).map(|axis| sides[axis]);
         let longest = resolved.fold(0.0, f64::max);
-        let least_depth = 0.5 * if longest > 0.0 { longest } else { sides[0].max(sides[1]) };
-        Ok(SubsurfaceStress { grid, body, sources, transform, least_depth })
+        let min_depth = 0.5 * if longest > 0.0 { longest } else { sides[0].max(sides[1]) };
+        Ok(SubsurfaceStress { grid, body, sources, transform, min_depth })
     }
 
     /// The grid of the pressure.
@@ -182,16 +182,16 @@ impl SubsurfaceStress {
         &self.grid
     }
 
-    /// The least depth \[m\] at which the stress is given: half of the longer side of a cell. Along an axis with a
+    /// The minimum depth \[m\] at which the stress is given: half of the longer side of a cell. Along an axis with a
     /// single cell, as in line contacts, its side does not count.
-    pub fn least_depth(&self) -> f64 {
-        self.least_depth
+    pub fn min_depth(&self) -> f64 {
+        self.min_depth
     }
 
     /// The stress below the centre of each cell at a depth \[m\], in the order of fields.
     ///
     /// # Errors
-    /// If the depth is less than [`SubsurfaceStress::least_depth`], or more than 1e100 m.
+    /// If the depth is less than [`SubsurfaceStress::min_depth`], or more than 1e100 m.
     pub fn on_plane(&self, depth: f64) -> Result<Vec<Stress>> {
         self.check_depth(depth)?;
         let mut plane = memory::field("the stress on a plane", self.grid.len(), Stress::default())?;
@@ -278,8 +278,8 @@ impl SubsurfaceStress {
 
     fn check_depth(&self, depth: f64) -> Result<()> {
         let near = "at least half the longest side of a cell across which the grid resolves anything \
-            (`least_depth`): nearer the stress varies within a cell";
-        within("depth", depth, depth >= self.least_depth, near)?;
+            (`min_depth`): nearer the stress varies within a cell";
+        within("depth", depth, depth >= self.min_depth, near)?;
         within("depth", depth, depth <= GREATEST_DEPTH, "at most 1e100 m").map(drop)
     }
 

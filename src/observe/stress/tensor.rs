@@ -63,7 +63,7 @@ impl Stress {
         (0.5 * (a * a + b * b + c * c) + 3.0 * shear).sqrt()
     }
 
-    /// The Tresca stress \[Pa\]: the difference of the largest and the least principal stress, twice the largest
+    /// The Tresca stress \[Pa\]: the difference of the largest and the smallest principal stress, twice the largest
     /// shear stress on any plane.
     pub fn tresca(&self) -> f64 {
         let [greatest, _, least] = self.principal();

@@ -35,7 +35,7 @@ fn planes_are_the_sums_over_all_cells() {
         let pressure = field(grid.len());
         for nu in [0.3, 0.5] {
             let stress = SubsurfaceStress::new(&kernel, &pressure, nu).unwrap();
-            for depth in [stress.least_depth(), 0.13, 0.5, 7.0].into_iter().filter(|&z| z >= stress.least_depth()) {
+            for depth in [stress.min_depth(), 0.13, 0.5, 7.0].into_iter().filter(|&z| z >= stress.min_depth()) {
                 let plane = stress.on_plane(depth).unwrap();
                 for (k, found) in plane.iter().enumerate() {
                     let [x1, x2] = grid.center(k / grid.cells()[1], k % grid.cells()[1]);
@@ -81,7 +81,7 @@ fn a_plane_carries_the_load_of_a_period() {
         let pressure = field(kernel.grid().len());
         let stress = SubsurfaceStress::new(&kernel, &pressure, 0.3).unwrap();
         let load: f64 = pressure.iter().sum();
-        for depth in [stress.least_depth(), 1.0, 30.0] {
+        for depth in [stress.min_depth(), 1.0, 30.0] {
             let plane = stress.on_plane(depth).unwrap();
             let carried: f64 = plane.iter().map(|s| s.s33).sum();
             assert!((carried / load + 1.0).abs() < 1e-14, "{kernel} {depth}: {carried}");
@@ -165,12 +165,12 @@ fn wrong_arguments_are_refused_by_name() {
         assert_eq!(name(new(&[1.0; 24], nu).unwrap_err()), "Poisson's ratio");
     }
     let stress = new(&[1.0; 24], 0.3).unwrap();
-    assert_eq!(stress.least_depth(), 0.5);
+    assert_eq!(stress.min_depth(), 0.5);
     for depth in [0.4999, 0.0, -1.0, f64::NAN, f64::INFINITY, 1e101] {
         assert_eq!(name(stress.on_plane(depth).unwrap_err()), "depth");
         assert_eq!(name(stress.at(&[[0.0, 0.0, depth]]).unwrap_err()), "depth");
         assert_eq!(name(stress.on_section(Axis::X1, 0.0, &[depth]).unwrap_err()), "depth");
-        assert_eq!(name(stress.greatest(&[depth], Stress::von_mises).unwrap_err()), "depth");
+        assert_eq!(name(stress.maximum(&[depth], Stress::von_mises).unwrap_err()), "depth");
     }
     assert_eq!(name(stress.on_section(Axis::X1, 0.0, &[]).unwrap_err()), "depths");
     assert_eq!(name(stress.in_volume(&[1.0, 1.0]).unwrap_err()), "depths");

@@ -167,7 +167,7 @@ impl FitReport {
         self.samples.iter().copied().max_by(|a, b| a.misfit().abs().total_cmp(&b.misfit().abs()))
     }
 
-    /// The least and maximum positive time \[s\] or angular frequency \[rad/s\] fitted; `None` if nothing
+    /// The minimum and maximum positive time \[s\] or angular frequency \[rad/s\] fitted; `None` if nothing
     /// was.
     pub fn range(&self) -> Option<[f64; 2]> {
         let positive = || self.samples.iter().map(|sample| sample.x).filter(|x| *x > 0.0);

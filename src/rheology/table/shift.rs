@@ -103,7 +103,7 @@ pub(super) fn shift_between(colder: &Isotherm, warmer: &Isotherm, is_vertical: b
     let mut by_column: Vec<(f64, f64)> = Vec::new();
     for &column in &all {
         let at_scatter = |scatter: &[f64]| {
-            numeric::least(low, high, TRIED, |shift| pair.cost(shift, &[column], scatter) + PER_DECADE * decades(shift))
+            numeric::minimum(low, high, TRIED, |by| pair.cost(by, &[column], scatter) + PER_DECADE * decades(by))
         };
         let is_inside = |shift: f64| (shift - low).min(high - shift) > 0.5 * step;
         let shift = pair.superposed(column, &mut scatter, at_scatter, is_inside);
@@ -121,7 +121,7 @@ pub(super) fn shift_between(colder: &Isotherm, warmer: &Isotherm, is_vertical: b
     if at_end || apart > MOST_APART {
         let wide = vec![MOST_MODEL_ERROR; columns];
         let cost = |shift: f64| pair.cost(shift, &all, &wide) + PER_DECADE * decades(shift);
-        let widest = numeric::least(low, high, TRIED, cost);
+        let widest = numeric::minimum(low, high, TRIED, cost);
         let overlap = (c1 - c0 + w1 - w0) / std::f64::consts::LN_10 - decades(widest);
         let of_column = |&column: &usize| pair.residual(widest, column, 0.0);
         let there = all.iter().map(of_column).fold(f64::INFINITY, f64::min);
@@ -220,7 +220,7 @@ impl Pair<'_> {
     /// The shift of least cost in a part of the range around another.
     fn refined(&self, near: f64, [low, high]: [f64; 2], part: f64, (columns, scatter): (&[usize], &[f64])) -> f64 {
         let around = part * (high - low);
-        numeric::least((near - around).max(low), (near + around).min(high), 48, |shift| {
+        numeric::minimum((near - around).max(low), (near + around).min(high), 48, |shift| {
             self.cost(shift, columns, scatter)
         })
     }

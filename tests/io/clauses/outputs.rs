@@ -48,7 +48,7 @@ pub(super) fn results(t: &mut Table) {
     t.row(changing(&half_space, &field, &short), Value, "reduced pressure: 63 given, 64 needed");
     t.row(changing(&half_space, &field, &[f64::INFINITY; 64]), Value, "reduced pressure = inf → finite and at most 1e150 Pa…");
     let stress = SubsurfaceStress::new(&half_space, &field, 0.3).unwrap();
-    for (depth, says) in [(0.4e-3, "depth = 0.0004 → at least half the longest side of a cell…least_depth…"), (1.0e101, "depth = 1e101 → at most 1e100 m")] {
+    for (depth, says) in [(0.4e-3, "depth = 0.0004 → at least half the longest side of a cell…min_depth…"), (1.0e101, "depth = 1e101 → at most 1e100 m")] {
         t.row(stress.on_plane(depth), Value, says);
         t.row(stress.at(&[[0.0, 0.0, 1.0e-3], [0.0, 0.0, depth]]), Value, says);
         t.row(stress.on_section(Axis::X1, 0.0, &[depth]), Value, says);

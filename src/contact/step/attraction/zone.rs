@@ -80,7 +80,7 @@ pub(in crate::contact) fn resolved_softening(law: &dyn Attraction, material: &Ma
         return Ok(softening);
     }
     let (spacing, range) = (longer_side(grid) * cells / LEAST_ZONE, law.range() * (LEAST_ZONE / cells).sqrt());
-    Err(AdhesionError::ZoneNotResolved { cells, least: LEAST_ZONE, spacing, range }.into())
+    Err(AdhesionError::ZoneNotResolved { cells, minimum: LEAST_ZONE, spacing, range }.into())
 }
 
 /// Fewer cells resolve the zone badly.

@@ -117,10 +117,10 @@ impl RoughSpec {
         };
         let (cells, spacing) = (grid.cells(), grid.spacing());
         for axis in (0..2).filter(|&axis| cells[axis] > 1) {
-            let (shortest, least) = (self.shortest, 2.0 * spacing[axis]);
-            if shortest < least * (1.0 - 1e-12) {
-                let needed = (least * cells[axis] as f64 / shortest * (1.0 - 1e-12)).ceil() as usize;
-                return Err(MapError::TooFine { shortest, least, axis: Axis::BOTH[axis], cells: needed }.into());
+            let (shortest, minimum) = (self.shortest, 2.0 * spacing[axis]);
+            if shortest < minimum * (1.0 - 1e-12) {
+                let needed = (minimum * cells[axis] as f64 / shortest * (1.0 - 1e-12)).ceil() as usize;
+                return Err(MapError::TooFine { shortest, minimum, axis: Axis::BOTH[axis], cells: needed }.into());
             }
         }
         Ok(())

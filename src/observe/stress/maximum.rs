@@ -9,7 +9,7 @@ use crate::memory;
 const ROUNDS: usize = 8;
 const NARROWER: f64 = 0.4;
 
-/// The point where a stress is largest, see [`SubsurfaceStress::greatest`].
+/// The point where a stress is largest, see [`SubsurfaceStress::maximum`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -35,7 +35,7 @@ impl SubsurfaceStress {
     ///
     /// # Errors
     /// As [`SubsurfaceStress::on_section`].
-    pub fn greatest(&self, depths: &[f64], quantity: impl Fn(&Stress) -> f64) -> Result<StressPeak> {
+    pub fn maximum(&self, depths: &[f64], quantity: impl Fn(&Stress) -> f64) -> Result<StressPeak> {
         self.check_depths(depths)?;
         let mut plane = memory::field("the stress on a plane", self.grid.len(), Stress::default())?;
         let mut buffers = self.buffers();
