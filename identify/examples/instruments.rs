@@ -16,7 +16,7 @@ use clap::Parser;
 use viscocontact::TextFormat;
 use viscocontact::states::ElasticStates;
 use viscocontact_identify::{
-    Experiment, Fit, FitWarning, Identification, Model, Nuisance, Protocol, Recording, Result, tips,
+    Experiment, Fit, FitWarning, Identification, Model, Nuisance, Protocol, Recording, Result,
 };
 
 /// Files of six instruments.
@@ -32,21 +32,21 @@ struct Args {
 
 /// JPK: names and units stand in comments; the deflection is in metres.
 fn jpk(file: &Path) -> Result<Fit> {
-    let (bead, stiffness) = (tips::paraboloid(5.0e-6)?, 0.05);
+    let (bead, stiffness) = (ElasticStates::sphere(5.0e-6)?, 0.05);
     let curve = Recording::from_csv(file, TextFormat::default())?.spring_curve(&bead, stiffness)?;
     Identification::new(Model::Zener).contact_point(Nuisance::Fitted).offset(Nuisance::Fitted).fit(&[curve])
 }
 
 /// Chiaro of Optics11: tabs, below 36 lines of settings; load and position are taken, the cantilever is left.
 fn chiaro(file: &Path) -> Result<Fit> {
-    let (bead, stiffness) = (tips::paraboloid(5.0e-6)?, 0.05);
+    let (bead, stiffness) = (ElasticStates::sphere(5.0e-6)?, 0.05);
     let curve = Recording::from_csv(file, TextFormat::default())?.spring_curve(&bead, stiffness)?;
     Identification::new(Model::Zener).contact_point(Nuisance::Fitted).offset(Nuisance::Fitted).fit(&[curve])
 }
 
 /// A load cell whose program writes decimal commas.
 fn load_cell(file: &Path) -> Result<Fit> {
-    let (bead, stiffness) = (tips::paraboloid(5.0e-6)?, 0.05);
+    let (bead, stiffness) = (ElasticStates::sphere(5.0e-6)?, 0.05);
     let format = TextFormat::default().with_decimal_comma(true);
     let curve = Recording::from_csv(file, format)?.spring_curve(&bead, stiffness)?;
     Identification::new(Model::Zener).contact_point(Nuisance::Fitted).offset(Nuisance::Fitted).fit(&[curve])
@@ -54,7 +54,7 @@ fn load_cell(file: &Path) -> Result<Fit> {
 
 /// A script of one's own: `numpy.savetxt` with a header.
 fn numpy(file: &Path) -> Result<Fit> {
-    let (bead, stiffness) = (tips::paraboloid(5.0e-6)?, 0.05);
+    let (bead, stiffness) = (ElasticStates::sphere(5.0e-6)?, 0.05);
     let curve = Recording::from_csv(file, TextFormat::default())?.spring_curve(&bead, stiffness)?;
     Identification::new(Model::Zener).contact_point(Nuisance::Fitted).offset(Nuisance::Fitted).fit(&[curve])
 }
@@ -69,7 +69,7 @@ fn nanoindenter(file: &Path) -> Result<Fit> {
 /// Asylum: the position falls toward the sample, interference tilts the base line, and the tip sticks before it leaves. The whole curve
 /// warns of the pull-off; until the release there is none.
 fn asylum(file: &Path) -> Result<Fit> {
-    let (bead, stiffness) = (tips::paraboloid(5.0e-6)?, 0.05);
+    let (bead, stiffness) = (ElasticStates::sphere(5.0e-6)?, 0.05);
     let curve = Recording::from_csv(file, TextFormat::default())?.flip_drive().spring_curve(&bead, stiffness)?;
     let fitting = Identification::new(Model::Zener).contact_point(Nuisance::Fitted).offset(Nuisance::Fitted);
     let whole = fitting.fit(std::slice::from_ref(&curve))?;
@@ -133,7 +133,7 @@ fn recorded(instrument: &str, seed: u64) -> Result<Vec<[f64; 3]>> {
     let protocol = Protocol::ramp_hold_retract(4.0e-6, [0.4e-6, 1.2e-6], 1.5, 0.005)?;
     let experiment = match instrument {
         "nanoindenter" => Experiment::new(protocol.clone(), ElasticStates::cone(0.7)?),
-        _ => Experiment::new(protocol.clone(), tips::paraboloid(5.0e-6)?).with_spring(0.05)?,
+        _ => Experiment::new(protocol.clone(), ElasticStates::sphere(5.0e-6)?).with_spring(0.05)?,
     };
     let samples = Identification::new(Model::Zener).respond(&experiment, &BODY)?;
     let greatest = samples.iter().fold(0.0, |most: f64, sample| most.max(sample.force));

@@ -91,7 +91,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         ("hold, ramp factor", RampCorrection::Factor),
     ] {
         let read = hold_relaxation(&curve, 0.0, correction)?;
-        readings.push(Reading { name, values: [read.glassy(), read.equilibrium, read.time] });
+        readings.push(Reading { name, values: [read.glassy, read.equilibrium, read.time] });
     }
     let fit = Identification::new(Model::Zener).contact_point(Nuisance::Fitted).fit(&[curve])?;
     let estimate = |name: &str| fit.estimate(name).ok_or("a parameter of the model");

@@ -42,13 +42,6 @@ pub struct ComplexModulus {
     pub residual: f64,
 }
 
-impl ComplexModulus {
-    /// E′ + i E″ \[Pa\].
-    pub fn modulus(&self) -> Complex<f64> {
-        Complex::new(self.storage, self.loss)
-    }
-}
-
 impl Curve {
     /// The complex modulus E*(iω) = F̂/(S δ̂) of an oscillation of the drive at `frequency` \[Hz\] in a `window` of times \[s\],
     /// about a hold at some depth; `contact_point` is the drive at which the tip touches first \[m\].

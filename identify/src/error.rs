@@ -1,22 +1,13 @@
 //! The error type of the crate.
 
+use viscocontact::Error as ContactError;
+
 /// Everything that can go wrong, with the numbers needed to correct it.
 ///
 /// `Debug` prints the message, so that a program whose `main` returns [`Result`] ends with what to do.
 #[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// A value is outside the allowed range.
-    #[error("{field} = {value:?} is not allowed: it must be {allowed}")]
-    OutOfRange {
-        /// Which value.
-        field: &'static str,
-        /// The value given.
-        value: f64,
-        /// The allowed range.
-        allowed: &'static str,
-    },
-
     /// A parameter is outside its allowed range.
     #[error("{name} = {value:?} is not allowed: it must be {allowed}")]
     ParameterOutOfRange {
@@ -35,46 +26,6 @@ pub enum Error {
         name: String,
         /// The number of its values.
         values: usize,
-    },
-
-    /// There is no curve of this index.
-    #[error("there is no curve {curve}: the fit is of {curves}, and the first is curve 0")]
-    NoCurve {
-        /// The index given.
-        curve: usize,
-        /// The number of curves.
-        curves: usize,
-    },
-
-    /// Two columns of a curve differ in length.
-    #[error("{field}: {len} values given, {expected} needed")]
-    WrongLength {
-        /// Which column.
-        field: &'static str,
-        /// Its length.
-        len: usize,
-        /// The number of times.
-        expected: usize,
-    },
-
-    /// Times do not ascend.
-    #[error(
-        "time[{index}] = {value:?} s follows {previous:?} s: times must ascend; sort the rows, and drop repeated ones"
-    )]
-    TimesNotAscending {
-        /// Index of the first time that does not ascend.
-        index: usize,
-        /// That time \[s\].
-        value: f64,
-        /// The time before it \[s\].
-        previous: f64,
-    },
-
-    /// A load history prescribes the force, and the force is what an experiment measures.
-    #[error("the load at {time:?} s is a force: the drive is an approach, or the far end of a spring")]
-    DrivenByForce {
-        /// The time \[s\].
-        time: f64,
     },
 
     /// There are not more data than free parameters.
@@ -152,15 +103,6 @@ pub enum Error {
         previous: f64,
     },
 
-    /// A curve has too few points to tell a contact from scatter.
-    #[error("a curve of {points} points is too short: at least {minimum} are needed; measure at a higher rate")]
-    ShortCurve {
-        /// Points of the curve.
-        points: usize,
-        /// Points needed.
-        minimum: usize,
-    },
-
     /// The force falls where the tip goes deeper.
     #[error(
         "the force falls by {fall:.2e} N from the shallow to the deep end of the curve: forces that press are positive; use Recording::flip_force"
@@ -223,9 +165,9 @@ pub enum Error {
         reason: String,
     },
 
-    /// An error of the contact, its tip or a file.
+    /// An error of the contact, its tip or a file; a value or a count outside its range, or columns of other lengths.
     #[error(transparent)]
-    Contact(#[from] viscocontact::Error),
+    Contact(#[from] ContactError),
 }
 
 impl std::fmt::Debug for Error {
@@ -239,7 +181,7 @@ pub type Result<T, E = Error> = std::result::Result<T, E>;
 
 /// Accepts finite values for which `inside` holds.
 pub(crate) fn within(field: &'static str, value: f64, inside: bool, allowed: &'static str) -> Result<f64> {
-    if value.is_finite() && inside { Ok(value) } else { Err(Error::OutOfRange { field, value, allowed }) }
+    if value.is_finite() && inside { Ok(value) } else { Err(ContactError::OutOfRange { field, value, allowed }.into()) }
 }
 
 /// Accepts finite values above zero.
@@ -249,15 +191,15 @@ pub(crate) fn positive(field: &'static str, value: f64) -> Result<f64> {
 
 /// Accepts a count for which `inside` holds.
 pub(crate) fn count_within(field: &'static str, value: usize, inside: bool, allowed: &'static str) -> Result<()> {
-    if inside { Ok(()) } else { Err(viscocontact::Error::CountOutOfRange { field, value, allowed }.into()) }
+    if inside { Ok(()) } else { Err(ContactError::CountOutOfRange { field, value, allowed }.into()) }
 }
 
 /// The error of a parameter that is none of some `names`.
-pub(crate) fn unknown(name: &str, names: &[String]) -> Error {
-    Error::UnknownParameter { name: name.into(), names: names.join(", ") }
+pub(crate) fn unknown<'a>(name: &str, names: impl Iterator<Item = &'a String>) -> Error {
+    Error::UnknownParameter { name: name.into(), names: names.cloned().collect::<Vec<_>>().join(", ") }
 }
 
 /// Accepts columns of equal length.
 pub(crate) fn same_length(field: &'static str, len: usize, expected: usize) -> Result<()> {
-    if len == expected { Ok(()) } else { Err(Error::WrongLength { field, len, expected }) }
+    if len == expected { Ok(()) } else { Err(ContactError::WrongLength { field, len, expected, exact: true }.into()) }
 }

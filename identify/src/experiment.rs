@@ -134,9 +134,7 @@ impl Curve {
     /// If the lengths differ, or a force is not finite.
     pub fn new(experiment: Experiment, force: Vec<f64>) -> Result<Curve> {
         same_length("force", force.len(), experiment.protocol.times.len())?;
-        for &value in &force {
-            within("force", value, true, "finite")?;
-        }
+        force.iter().try_for_each(|&value| within("force", value, true, "finite").map(drop))?;
         Ok(Curve { experiment, force })
     }
 

@@ -2,6 +2,8 @@
 
 use std::f64::consts::PI;
 
+use viscocontact::numeric::root;
+
 /// −ln of the least share of a spectrum that is summed, and the spacing of its nodes: the trapezoidal rule errs by exp(−π²/spacing), below 1e-8.
 const LEAST_SHARE: f64 = 23.0;
 const NODES: f64 = 0.5;
@@ -33,16 +35,9 @@ pub(crate) fn spectrum(alpha: f64, [slowest, fastest]: [f64; 2]) -> Vec<(f64, f6
     let first = (slowest - LEAST_SHARE).clamp(-reach, -LEAST_SHARE);
     let last = (fastest + LEAST_SHARE).clamp(1.0, reach);
     let y = |v_k: f64| {
-        // Newton's steps from the side of 0, where v is steepest, do not pass the root
-        let mut y = v_k * width / (1.0 + width);
-        for _ in 0..60 {
-            let step = (v(y) - v_k) / (1.0 + 1.0 / y.hypot(width));
-            y -= step;
-            if step.abs() <= 1e-15 * y.abs() {
-                break;
-            }
-        }
-        y
+        let distance = |y: f64| [v(y) - v_k.abs(), 1.0 + 1.0 / y.hypot(width)];
+        // from the side of 0, where v is steepest
+        v_k.signum() * root([0.0, v_k.abs()], v_k.abs() * width / (1.0 + width), 1e-15, distance)
     };
     let [from, to] = [first, last].map(|end| (v(end) / NODES).round() as i64);
     let node = |k: i64| {

@@ -247,7 +247,7 @@ impl Identification {
     /// Values of all parameters from the material's by name.
     fn given(&self, problem: &Problem, named: &[(&str, f64)]) -> Result<Vec<f64>> {
         if let Some((name, _)) = named.iter().find(|(name, _)| problem.parameters.iter().all(|p| p.name != *name)) {
-            return Err(unknown(name, &problem.parameters.iter().map(|own| own.name.clone()).collect::<Vec<_>>()));
+            return Err(unknown(name, problem.parameters.iter().map(|own| &own.name)));
         }
         let value = |parameter: &Parameter| {
             let own = || named.iter().filter(|(name, _)| *name == parameter.name).map(|(_, value)| *value);

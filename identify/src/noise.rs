@@ -29,11 +29,6 @@ pub(crate) struct Whitening {
 }
 
 impl Whitening {
-    /// What is known of the noise.
-    pub(crate) fn of(noise: Noise) -> Whitening {
-        Whitening { phi: if let Noise::AutoregressiveWith(phi) = noise { phi } else { 0.0 }, memory: 0.0 }
-    }
-
     /// Makes a column white in place.
     pub(crate) fn apply(&self, column: &mut [f64]) {
         difference(column, self.memory);

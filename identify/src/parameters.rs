@@ -168,7 +168,7 @@ impl Chosen {
         let names = model.parameters();
         let is_known = |name: &String| names.contains(name) || Property::ALL.iter().any(|other| other.name() == name);
         if let Some((name, _)) = self.0.iter().find(|(name, _)| !is_known(name)) {
-            return Err(unknown(name, &names));
+            return Err(unknown(name, names.iter()));
         }
         let mut all = Parameter::of_material(model, self)?;
         for property in Property::ALL {

@@ -34,7 +34,9 @@ impl Part {
         };
         let (speed, outliers) = ((0..=last).map(speed).collect(), vec![1.0; times.len()]);
         let tip = Tip::new(index, &curve.experiment.tip, curve.experiment.surface);
-        Part { curve, whitening: Whitening::of(noise), scale: 1.0, weight: 1.0, outliers, tip, speed }
+        let phi = if let Noise::AutoregressiveWith(phi) = noise { phi } else { 0.0 };
+        let whitening = Whitening { phi, memory: 0.0 };
+        Part { curve, whitening, scale: 1.0, weight: 1.0, outliers, tip, speed }
     }
 
     /// At most so many means of neighbouring samples, as if their noise were white.

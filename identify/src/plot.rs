@@ -5,8 +5,9 @@ use viscocontact::plot::{COLORS, Chart, Legend, Picture, Quantity, Scale, Style}
 use crate::error::Result;
 use crate::fit::Fit;
 use crate::series::times;
-use crate::statistics::WITHIN_95;
 
+/// A normal variable is within so many standard deviations in 95 of 100 cases.
+const WITHIN_95: f64 = 1.959963984540054;
 /// Points of a curve of the modulus.
 const POINTS: usize = 100;
 
@@ -30,30 +31,6 @@ const POINTS: usize = 100;
 /// # Ok::<(), viscocontact_identify::Error>(())
 /// ```
 impl Fit {
-    /// Measured and fitted force of a curve over time, with the band within which 95 % of the noise should be.
-    ///
-    /// # Errors
-    /// If there is no such curve.
-    pub fn force_chart(&self, curve: usize) -> Result<Chart> {
-        let (times, measured) = (self.experiment(curve)?.protocol().times(), self.curves()[curve].force());
-        let mut chart = self.noise_chart(curve, "Force", "force", self.force(curve));
-        chart.add("measured", COLORS[0], Style::Dots, pairs(times, measured));
-        chart.add(format!("fitted, {}", self.model()), COLORS[1], Style::Line, pairs(times, self.force(curve)));
-        Ok(chart)
-    }
-
-    /// Measured less fitted force of a curve over time, with the limits within which 95 % of the residuals should be. Neighbours on
-    /// the same side show that the model is wrong.
-    ///
-    /// # Errors
-    /// If there is no such curve.
-    pub fn residual_chart(&self, curve: usize) -> Result<Chart> {
-        let times = self.experiment(curve)?.protocol().times();
-        let mut chart = self.noise_chart(curve, "Residuals", "measured - fitted force", &vec![0.0; times.len()]);
-        chart.add("", COLORS[0], Style::Dots, pairs(times, self.residuals(curve)));
-        Ok(chart)
-    }
-
     /// The contact modulus over time with its band of 95 %, from the shortest sampling interval to the length of the curves.
     pub fn modulus_chart(&self) -> Chart {
         let times = times(self.problem.window, POINTS).into_iter();
@@ -75,18 +52,25 @@ impl Fit {
         chart
     }
 
-    /// Force and residuals of a curve, and the contact modulus, side by side.
+    /// Side by side: measured and fitted force of a curve over time with the band within which 95 % of the noise should
+    /// be, the same less the fitted force, where neighbours on one side show that the model is wrong, and the modulus.
     ///
     /// # Errors
     /// If there is no such curve; those of [`Chart::draw`] and [`Picture::beside`].
     pub fn picture(&self, curve: usize) -> Result<Picture> {
-        let charts = [self.force_chart(curve)?, self.residual_chart(curve)?, self.modulus_chart()];
+        let times = self.experiment(curve)?.protocol().times();
+        let (fitted, rest) = (self.force(curve), &vec![0.0; times.len()]);
+        let mut forces = self.noise_chart(curve, ["Force", "force", "measured"], self.curves()[curve].force(), fitted);
+        forces.add(format!("fitted, {}", self.model()), COLORS[1], Style::Line, pairs(times, fitted));
+        let titles = ["Residuals", "measured - fitted force", ""];
+        let charts = [forces, self.noise_chart(curve, titles, self.residuals(curve), rest), self.modulus_chart()];
         let pictures = charts.iter().map(Chart::draw).collect::<viscocontact::Result<Vec<_>>>()?;
         Ok(Picture::beside(&pictures)?)
     }
 
-    /// A chart of forces, with the limits of 95 % of the noise about some of them: of correlated noise, of the whole one.
-    fn noise_chart(&self, curve: usize, title: &str, name: &str, middle: &[f64]) -> Chart {
+    /// A chart of forces, and the limits of 95 % of the noise about others: of correlated noise, of the whole one. The
+    /// title is followed by the names of the axis and of the forces.
+    fn noise_chart(&self, curve: usize, [title, name, dots]: [&str; 3], forces: &[f64], middle: &[f64]) -> Chart {
         let mut chart = Chart::new(title, Quantity::new("time", "s"), Quantity::new(name, "N"), Legend::UpperRight);
         let times = self.curves()[curve].experiment().protocol().times();
         let phi = self.autoregression_of(curve).unwrap_or_default();
@@ -95,6 +79,7 @@ impl Fit {
             let moved: Vec<f64> = middle.iter().map(|force| force + side).collect();
             chart.add(label, COLORS[5], Style::Line, pairs(times, &moved));
         }
+        chart.add(dots, COLORS[0], Style::Dots, pairs(times, forces));
         chart
     }
 }

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use faer::Mat;
 
-use crate::error::{Error, Result};
+use crate::error::{Result, count_within};
 use crate::experiment::Curve;
 use crate::forward::{Cycle, LANES, PLAIN, Real, Sample};
 use crate::model::{Model, Scale};
@@ -20,10 +20,10 @@ use crate::watch::Watch;
 /// Least share of a modulus that relaxes.
 const LEAST_SHARE: f64 = 1e-12;
 /// Means of neighbouring samples of a curve with which a search begins, and with which it ends.
-const ROUGH: usize = 128;
+pub(crate) const ROUGH: usize = 128;
 pub(crate) const LONG: usize = 2048;
 /// A search ends with the step that reduces the sum of squares by less than this fraction; one with few samples, early.
-const ENOUGH: [f64; 2] = [1e-10, 1e-4];
+pub(crate) const ENOUGH: [f64; 2] = [1e-10, 1e-4];
 /// Residuals are rounding below this fraction of the squared data.
 const EXACT: f64 = 1e-18;
 /// Width of coordinates over which derivatives of parameters are taken.
@@ -59,9 +59,7 @@ pub(crate) struct Response {
 
 impl Problem {
     pub(crate) fn new(model: Model, chosen: &Chosen, curves: Vec<Curve>, noise: Noise) -> Result<Problem> {
-        if curves.is_empty() {
-            return Err(Error::TooFewPoints { points: 0, parameters: model.parameters().len() });
-        }
+        count_within("curves", curves.len(), !curves.is_empty(), "1 or more")?;
         let parameters = chosen.parameters(model, &curves)?;
         let times = || curves.iter().map(|curve| curve.experiment.protocol.times());
         let shortest = times().flat_map(|t| t.windows(2).map(|w| w[1] - w[0])).fold(f64::INFINITY, f64::min);
@@ -78,11 +76,6 @@ impl Problem {
             work: Arc::default(),
             watch: Watch::default(),
         })
-    }
-
-    /// The same problem with few samples, on which a search is cheap; `None` where there are few.
-    pub(crate) fn rough(&self) -> Option<Problem> {
-        Some(Problem { enough: ENOUGH[1], ..self.thinned(ROUGH)? })
     }
 
     /// The same problem with at most so many means of neighbours of each curve; `None` where there are no more samples.
@@ -119,9 +112,7 @@ impl Problem {
     /// Values of all parameters from those of a contained model.
     pub(crate) fn of_contained(&self, inner: Model, values: &[f64]) -> Vec<f64> {
         let (material, others) = values.split_at(inner.parameters().len());
-        let mut all = self.model.of_contained(inner, material, self.window[1]);
-        all.extend_from_slice(others);
-        all
+        [self.model.of_contained(inner, material, self.window[1]), others.to_vec()].concat()
     }
 
     /// The same problem without weights of outliers.
@@ -146,15 +137,23 @@ impl Problem {
         self.parameters.iter().filter(|parameter| parameter.is_free)
     }
 
+    /// (t/tau)^exponent in the middle of the data, of a model with one time.
+    fn relaxed(&self, values: &[f64]) -> f64 {
+        let of = |name: &str| self.parameters.iter().position(|parameter| parameter.name == name).map(|at| values[at]);
+        let (middle, exponent) = ((self.window[0] * self.window[1]).sqrt(), of("alpha").or(of("beta")).unwrap_or(1.0));
+        of("tau").map_or(0.0, |tau| (middle / tau).powf(exponent))
+    }
+
     /// The factor by which a part of the modulus falls to the middle of the data, or nearly so: it is better known there than at the time 0.
     fn fall(&self, values: &[f64]) -> f64 {
-        let of = |name: &str| self.parameters.iter().position(|parameter| parameter.name == name).map(|at| values[at]);
-        let middle = (self.window[0] * self.window[1]).sqrt();
-        of("tau").map_or(1.0, |tau| 1.0 + (middle / tau).powf(of("alpha").unwrap_or(1.0)))
+        if self.model == Model::Stretched { self.relaxed(values).exp() } else { 1.0 + self.relaxed(values) }
     }
 
     /// Values of all parameters from the coordinates of the free ones. The coordinate of E0 is ln((E0 − Einf)/fall); that of Einf below a fixed E0
     /// is ln(Einf/(E0 − Einf)): every coordinate is allowed.
+    ///
+    /// That of tau with an exponent beta is the logarithm of the slope beta (t/tau)^beta of the part of the modulus that
+    /// relaxes in the middle of the data: where beta falls to 0, which is a power law, modulus and slope there stay.
     pub(crate) fn values(&self, coordinates: &[f64]) -> Vec<f64> {
         let mut free = coordinates.iter();
         let value = |parameter: &Parameter| match parameter.is_free {
@@ -162,6 +161,9 @@ impl Problem {
             false => parameter.given.unwrap_or(f64::NAN),
         };
         let mut values: Vec<f64> = self.parameters.iter().map(value).collect();
+        if self.model == Model::Stretched && self.parameters[2].is_free {
+            values[2] = (self.window[0] * self.window[1]).sqrt() * (values[3] / values[2]).powf(1.0 / values[3]);
+        }
         if self.model.has_equilibrium() {
             if self.parameters[0].is_free {
                 values[0] = values[1] + values[0] * self.fall(&values);
@@ -175,6 +177,9 @@ impl Problem {
     /// Coordinates of the free parameters of given values.
     pub(crate) fn coordinates(&self, values: &[f64]) -> Vec<f64> {
         let mut own = values.to_vec();
+        if self.model == Model::Stretched && self.parameters[2].is_free {
+            own[2] = values[3] * self.relaxed(values);
+        }
         if self.model.has_equilibrium() {
             let relaxing = (values[0] - values[1]).max(LEAST_SHARE * values[0]);
             // a start that is not allowed is not at the limit, where no search leaves
@@ -362,11 +367,10 @@ impl Problem {
                 };
                 let derived = Prony { moduli: terms(|prony| &prony.moduli), rates: terms(|prony| &prony.rates) };
                 let measured = |value: f64, property: Property| {
-                    dual(value, &|_, parameter| match parameter.kind {
-                        Kind::Measurement(own, _) if own != property => 0.0,
-                        Kind::Measurement(..) if parameter.scale == Scale::Linear => parameter.unit,
-                        Kind::Measurement(..) => value,
-                        Kind::Material => 0.0,
+                    dual(value, &|_, parameter| match (parameter.kind, parameter.scale) {
+                        (Kind::Measurement(own, _), Scale::Linear) if own == property => parameter.unit,
+                        (Kind::Measurement(own, _), _) if own == property => value,
+                        _ => 0.0,
                     })
                 };
                 let shift = measured(self.contact_point(curve, &values), Property::ContactPoint);

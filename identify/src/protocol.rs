@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use viscocontact::load::{Load, LoadHistory};
+use viscocontact::Error as ContactError;
 
 use crate::error::{Error, Result, count_within, positive, same_length, within};
 
@@ -28,7 +28,9 @@ impl Protocol {
             values.iter().try_for_each(|&value| within(field, value, true, "finite").map(drop))?;
         }
         if let Some((index, pair)) = times.windows(2).enumerate().find(|(_, pair)| pair[1] <= pair[0]) {
-            return Err(Error::TimesNotAscending { index: index + 1, value: pair[1], previous: pair[0] });
+            let rule = "ascend: sort the rows, and drop repeated ones";
+            let (index, previous, value) = (index + 1, pair[0], pair[1]);
+            return Err(ContactError::OutOfOrder { field: "time", index, value, previous, rule }.into());
         }
         Ok(Protocol { times, drive })
     }
@@ -105,33 +107,6 @@ impl Protocol {
         count_within("depths of the staircase", depths.len(), !depths.is_empty(), "1 or more")?;
         let start = Protocol::builder(0.0, interval);
         depths.iter().fold(start, |stairs, &depth| stairs.line(depth, rise).hold(dwell)).build()
-    }
-
-    /// The approach, or the far end of the spring, of a load history of the main crate at ascending `times` \[s\]. A jump
-    /// becomes a ramp over the interval before it, and a corner between two times is cut: let corners be times.
-    ///
-    /// ```
-    /// use viscocontact::load::{Load, Ramp};
-    /// use viscocontact_identify::Protocol;
-    ///
-    /// let ramp = Ramp::new(Load::approach(0.0), Load::approach(1.0e-6), 1.0)?;
-    /// let protocol = Protocol::sampled(&ramp, vec![0.0, 0.5, 1.0, 2.0])?;
-    /// assert_eq!(protocol.drive(), [0.0, 0.5e-6, 1.0e-6, 1.0e-6]);
-    /// # Ok::<(), viscocontact_identify::Error>(())
-    /// ```
-    ///
-    /// # Errors
-    /// As [`Protocol::new`]; [`Error::DrivenByForce`] if a load is a force.
-    pub fn sampled(history: &dyn LoadHistory, times: Vec<f64>) -> Result<Protocol> {
-        drop(history.failure());
-        let drive = |&time: &f64| match history.at(time) {
-            Load::Approach { approach, .. } => Ok(approach),
-            Load::Spring { drive, .. } => Ok(drive),
-            _ => Err(Error::DrivenByForce { time }),
-        };
-        let drive = times.iter().map(drive).collect::<Result<_>>();
-        history.failure().map_or(Ok(()), |failure| Err(viscocontact::Error::from(failure)))?;
-        Protocol::new(times, drive?)
     }
 
     /// The times \[s\].

@@ -20,7 +20,7 @@ pub struct Summary {
     pub aicc: f64,
     /// Standard deviation of the noise \[N\].
     pub sigma: f64,
-    /// Autoregressive coefficient of the noise, if it has one.
+    /// Autoregressive coefficient of the noise of the first curve, if it has one.
     pub autoregression: Option<f64>,
     /// Samples with the tip in contact.
     pub points_in_contact: usize,
@@ -80,7 +80,7 @@ impl Fit {
             estimates: self.estimates().to_vec(),
             aicc: self.aicc(),
             sigma: self.sigma(),
-            autoregression: self.autoregression(),
+            autoregression: self.autoregression_of(0),
             points_in_contact: self.points_in_contact(),
             iterations: self.iterations(),
             probability: self.probability(),

@@ -11,8 +11,6 @@ const STARTS: usize = 4;
 const ENOUGH: f64 = 1e-3;
 /// Rounds in which moduli are scaled to the data: through a spring, forces are not proportional to them.
 const ROUNDS: usize = 3;
-/// Candidates that are scaled in all rounds.
-const SCALED: usize = 12;
 /// Values of a time, between the shortest interval and the length of the curve.
 const TIMES: usize = 6;
 
@@ -41,15 +39,13 @@ pub(crate) fn starts(problem: &Problem) -> Result<Vec<Vec<f64>>> {
         reference = reference.max(modulus);
     }
     let unit = if reference > 0.0 { reference } else { 1.0 };
-    // the sum is that before the last scaling, where a modulus is given
-    let first = if problem.parameters.iter().any(|of| of.given.is_some() && is_modulus(&of.name)) { 2 } else { 1 };
     let mut found: Vec<(f64, Vec<f64>)> = Vec::new();
     let mut failure = Error::NoContact { curve: 0 };
     for candidate in candidates(problem.model, problem.window) {
         for ((value, parameter), size) in values.iter_mut().zip(&problem.parameters).zip(candidate) {
             *value = parameter.given.unwrap_or(if is_modulus(&parameter.name) { size * unit } else { size });
         }
-        match scaled(problem, &mut values, first) {
+        match scaled(problem, &mut values) {
             Ok(sum) if sum.is_finite() => found.push((sum, values.clone())),
             Ok(_) => {}
             Err(error) => failure = error,
@@ -57,11 +53,6 @@ pub(crate) fn starts(problem: &Problem) -> Result<Vec<Vec<f64>>> {
     }
     if found.is_empty() {
         return Err(failure);
-    }
-    found.sort_by(|a, b| a.0.total_cmp(&b.0));
-    found.truncate(SCALED);
-    for (sum, values) in &mut found {
-        *sum = scaled(problem, values, ROUNDS - first).unwrap_or(f64::INFINITY);
     }
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
     Ok(found.into_iter().take(STARTS).map(|(_, values)| problem.coordinates(&values)).collect())
@@ -73,9 +64,9 @@ fn is_modulus(name: &str) -> bool {
 
 /// Scales the free moduli to the data in some rounds; returns the sum of squared deviations: after the last scaling, if forces are
 /// proportional to the moduli, and before it where a modulus is given.
-fn scaled(problem: &Problem, values: &mut [f64], rounds: usize) -> Result<f64> {
+fn scaled(problem: &Problem, values: &mut [f64]) -> Result<f64> {
     let mut sum = f64::INFINITY;
-    for _ in 0..rounds {
+    for _ in 0..ROUNDS {
         // of E0 and Einf, the one that is free may be beyond the other
         let prony = problem.prony(values).or_else(|_| {
             values.copy_from_slice(&problem.values(&problem.coordinates(values)));

@@ -2,9 +2,6 @@
 
 use statrs::distribution::{ChiSquared, ContinuousCDF, StudentsT};
 
-/// A normal variable is within so many standard deviations in 95 of 100 cases.
-#[cfg(feature = "plot")]
-pub(crate) const WITHIN_95: f64 = 1.959963984540054;
 /// Least and maximum value.
 pub(crate) fn range(values: &[f64]) -> [f64; 2] {
     values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &value| [low.min(value), high.max(value)])
@@ -53,13 +50,9 @@ pub(crate) fn line(x: &[f64], y: &[f64], has_intercept: bool) -> [f64; 3] {
 /// fitted, over curves.
 pub(crate) fn correlation_test(curves: &[Vec<f64>], fitted: usize) -> f64 {
     let (mut statistic, mut freedom) = (0.0, 0.0);
-    for residuals in curves {
-        let count = residuals.len();
+    for residuals in curves.iter().filter(|residuals| square(residuals) > 0.0) {
+        let (count, square) = (residuals.len(), square(residuals));
         let lags = 20.min(count / 5);
-        let square: f64 = residuals.iter().map(|r| r * r).sum();
-        if square == 0.0 {
-            continue;
-        }
         for lag in 1..=lags {
             let product: f64 = residuals.iter().zip(&residuals[lag..]).map(|(a, b)| a * b).sum();
             let correlation = product / square;

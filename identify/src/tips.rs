@@ -12,21 +12,15 @@ const RADII: [f64; 2] = [1e-3, 1.05];
 /// Maximum contact radius over the radius of a sphere.
 const GREATEST: f64 = 0.97;
 
-/// A paraboloid r²/2R of `radius` R \[m\] at its apex: Hertz's law, which is also named a sphere ([`ElasticStates::sphere`]).
-///
-/// # Errors
-/// As [`ElasticStates::sphere`].
-pub fn paraboloid(radius: f64) -> Result<Arc<ElasticStates>> {
-    Ok(ElasticStates::sphere(radius)?)
-}
-
 /// A true sphere of `radius` R \[m\], up to a contact radius a of 0.97 R (I. N. Sneddon, Int. J. Eng. Sci. 3, 1965):
-/// δ = (a/2) ln((R + a)/(R − a)), F/E* = ((a² + R²)/2) ln((R + a)/(R − a)) − aR. A paraboloid is softer by about δ/10R at the depth δ.
+/// δ = (a/2) ln((R + a)/(R − a)), F/E* = ((a² + R²)/2) ln((R + a)/(R − a)) − aR. The paraboloid of Hertz,
+/// [`ElasticStates::sphere`], is softer by about δ/10R at the depth δ.
 ///
 /// ```
-/// use viscocontact_identify::tips::{paraboloid, sphere};
+/// use viscocontact::states::ElasticStates;
+/// use viscocontact_identify::tips;
 ///
-/// let [ball, hertz] = [sphere(5.0e-6)?.level_at(1.0e-6), paraboloid(5.0e-6)?.level_at(1.0e-6)];
+/// let [ball, hertz] = [tips::sphere(5.0e-6)?, ElasticStates::sphere(5.0e-6)?].map(|tip| tip.level_at(1.0e-6));
 /// assert!((ball / hertz - 0.98).abs() < 2e-3);
 /// # Ok::<(), viscocontact_identify::Error>(())
 /// ```

@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 
 use viscocontact::numeric::minimum;
 
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, count_within, positive};
 use crate::experiment::Curve;
 use crate::statistics::{line, range};
 
@@ -103,24 +103,17 @@ pub enum RampCorrection {
     Factor,
 }
 
-/// The relaxation modulus E∞ + E₁ e^(−t/τ) of a hold, see [`hold_relaxation`].
+/// The relaxation modulus E∞ + (E₀ − E∞) e^(−t/τ) of a hold, see [`hold_relaxation`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct HoldRelaxation {
     /// Equilibrium contact modulus E∞ \[Pa\].
     pub equilibrium: f64,
-    /// Contact modulus E₁ that relaxes \[Pa\].
-    pub relaxing: f64,
+    /// Glassy contact modulus E₀ \[Pa\].
+    pub glassy: f64,
     /// Relaxation time τ \[s\].
     pub time: f64,
-}
-
-impl HoldRelaxation {
-    /// Glassy contact modulus E₀ = E∞ + E₁ \[Pa\].
-    pub fn glassy(&self) -> f64 {
-        self.equilibrium + self.relaxing
-    }
 }
 
 /// The relaxation modulus of a hold as F(t)/l(δ(t)), where l is the level of the elastic states: right after an ideal step of the
@@ -152,7 +145,7 @@ pub fn hold_relaxation(curve: &Curve, contact_point: f64, correction: RampCorrec
         RampCorrection::HalfRamp => (0.5 * ramp).exp(),
         RampCorrection::Factor => ramp / -(-ramp).exp_m1(),
     };
-    Ok(HoldRelaxation { equilibrium, relaxing: at_end * factor, time })
+    Ok(HoldRelaxation { equilibrium, glassy: equilibrium + at_end * factor, time })
 }
 
 /// The elastic law F = F₀ + E* l(δ) fitted to a loading curve, see [`loading_modulus`].
@@ -195,5 +188,5 @@ fn depths(curve: &Curve, contact_point: f64) -> Vec<f64> {
 }
 
 fn enough(points: usize) -> Result<()> {
-    if points >= LEAST_POINTS { Ok(()) } else { Err(Error::ShortCurve { points, minimum: LEAST_POINTS }) }
+    count_within("points that are read", points, points >= LEAST_POINTS, "5 or more: measure at a higher rate")
 }

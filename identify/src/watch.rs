@@ -6,27 +6,19 @@ use std::sync::Arc;
 
 use crate::error::Result;
 
-/// Whether a search goes on.
-#[derive(Clone)]
-pub(crate) struct Watch(Arc<dyn Fn() -> ControlFlow<()> + Send + Sync>);
+/// Whether a search goes on: where nothing tells, it does.
+#[derive(Clone, Default)]
+pub(crate) struct Watch(Option<Arc<dyn Fn() -> ControlFlow<()> + Send + Sync>>);
 
 impl Watch {
     pub(crate) fn new(goes_on: impl Fn() -> ControlFlow<()> + Send + Sync + 'static) -> Watch {
-        Watch(Arc::new(goes_on))
+        Watch(Some(Arc::new(goes_on)))
     }
 
     /// Ends a call whose watch breaks.
     pub(crate) fn goes_on(&self) -> Result<()> {
-        match (self.0)() {
-            ControlFlow::Continue(()) => Ok(()),
-            ControlFlow::Break(()) => Err(viscocontact::Error::Cancelled { what: "the fit" }.into()),
-        }
-    }
-}
-
-impl Default for Watch {
-    fn default() -> Watch {
-        Watch::new(|| ControlFlow::Continue(()))
+        let ends = self.0.as_ref().is_some_and(|goes_on| goes_on().is_break());
+        if ends { Err(viscocontact::Error::Cancelled { what: "the fit" }.into()) } else { Ok(()) }
     }
 }
 

@@ -1,5 +1,6 @@
 use std::sync::Arc;
 
+use viscocontact::Error as ContactError;
 use viscocontact::TextFormat;
 use viscocontact::prelude::*;
 use viscocontact_identify::{Curve, Error, Experiment, Nuisance, Protocol, Recording, Result};
@@ -97,7 +98,10 @@ fn columns_that_a_curve_needs_are_named() -> Result<()> {
         let error = curve.expect_err(column);
         assert!(matches!(error, Error::NoColumn { column: found, .. } if found == column), "{error}");
     }
-    assert!(matches!(recording.spring_curve(&tip, 0.1), Err(Error::ShortCurve { points: 2, .. })));
+    assert!(matches!(
+        recording.spring_curve(&tip, 0.1),
+        Err(Error::Contact(ContactError::CountOutOfRange { value: 2, .. }))
+    ));
     Ok(())
 }
 

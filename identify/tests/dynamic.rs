@@ -1,6 +1,7 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
+use viscocontact::Error as ContactError;
 use viscocontact::num_complex::Complex;
 use viscocontact::prelude::*;
 use viscocontact_identify::{Curve, Error, Experiment, Protocol, Result};
@@ -52,7 +53,7 @@ fn the_complex_modulus_is_the_closed_form_as_the_amplitude_falls() -> Result<()>
                 }
                 let curve = Curve::new(experiment.clone(), force(&experiment, 4)?)?;
                 let measured = curve.complex_modulus(frequency, window(frequency), 0.0)?;
-                Ok((measured.modulus() - exact(frequency)).norm() / exact(frequency).norm())
+                Ok((Complex::new(measured.storage, measured.loss) - exact(frequency)).norm() / exact(frequency).norm())
             };
             let [large, small] = [deviation(20.0e-9)?, deviation(2.0e-9)?];
             println!("{spring:?} {frequency} Hz: {large:.2e}, {small:.2e}");
@@ -79,7 +80,7 @@ fn the_standard_error_is_the_spread() -> Result<()> {
         };
         // a hundredth of the amplitude of the force
         let (clean, count) = (measure(0.0, 0)?, 300);
-        let noise = 0.01 * clean.amplitude * clean.stiffness * clean.modulus().norm();
+        let noise = 0.01 * clean.amplitude * clean.stiffness * clean.storage.hypot(clean.loss);
         let results = (1..=count).map(|seed| measure(noise, seed)).collect::<Result<Vec<_>>>()?;
         let mean = |of: &dyn Fn(usize) -> f64| (0..results.len()).map(of).sum::<f64>() / count as f64;
         type Of = fn(&viscocontact_identify::ComplexModulus) -> [f64; 2];
@@ -110,7 +111,7 @@ fn windows_that_cannot_work_are_refused() -> Result<()> {
         (5.0, 1.0..3.0, 0.0, "amplitude of the depth"),
     ] {
         match curve.complex_modulus(frequency, window, contact_point) {
-            Err(Error::OutOfRange { field, .. }) => assert_eq!(field, expected),
+            Err(Error::Contact(ContactError::OutOfRange { field, .. })) => assert_eq!(field, expected),
             other => panic!("{expected}: {other:?}"),
         }
     }

@@ -3,9 +3,7 @@
 use std::sync::Arc;
 
 use viscocontact::states::ElasticStates;
-use viscocontact_identify::{
-    Curve, Experiment, FitWarning, Identification, Model, Noise, Nuisance, Protocol, Result, tips,
-};
+use viscocontact_identify::{Curve, Experiment, FitWarning, Identification, Model, Noise, Nuisance, Protocol, Result};
 
 use crate::random::{from_environment, generator, normal};
 
@@ -29,7 +27,7 @@ fn with_noise(force: &[f64], seed: u64) -> (f64, Vec<f64>) {
 /// What instruments add: fits with the nuisance that describes it are unbiased, and where none is described, the fit says so.
 #[test]
 fn what_instruments_add_is_described_or_told() -> Result<()> {
-    let bead = tips::paraboloid(5.0e-6)?;
+    let bead = ElasticStates::sphere(5.0e-6)?;
     let (experiment, exact) = force_curve(&bead)?;
     let (times, drive) = (experiment.protocol().times(), experiment.protocol().drive());
     let speed = |k: usize| (drive[(k + 1).min(drive.len() - 1)] - drive[k.saturating_sub(1)]) / 0.01;
@@ -69,7 +67,7 @@ fn what_instruments_add_is_described_or_told() -> Result<()> {
 
 #[test]
 fn a_misfit_has_a_size_and_its_effect_on_the_modulus_is_told() -> Result<()> {
-    let bead = tips::paraboloid(5.0e-6)?;
+    let bead = ElasticStates::sphere(5.0e-6)?;
     let (experiment, exact) = force_curve(&bead)?;
     let (greatest, force) = with_noise(&exact, 3);
     let drifting = force.iter().zip(experiment.protocol().times()).map(|(force, time)| force + 0.05 * greatest * time);

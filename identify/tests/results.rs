@@ -1,5 +1,6 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use viscocontact::Error as ContactError;
 use viscocontact::states::ElasticStates;
 use viscocontact_identify::{
     Curve, Error, Experiment, Fit, FitWarning, Identification, Model, Nuisance, Protocol, Result, Summary,
@@ -61,13 +62,17 @@ fn each_curve_has_its_own_spring_contact_point_and_start() -> Result<()> {
     }
     // a list that is too short, and a name of nothing
     let short = starts.fit_each(&[curve(0, moduli[0])?, curve(1, moduli[1])?, curve(0, moduli[0])?], |_| ());
-    assert!(matches!(short[2], Err(Error::WrongLength { .. })), "{:?}", short[2]);
+    assert!(matches!(short[2], Err(Error::Contact(ContactError::WrongLength { .. }))), "{:?}", short[2]);
     // and one that is too long
     let long = zener.clone().contact_point(vec![Nuisance::Fitted; 3]);
     let curves = [curve(0, moduli[0])?, curve(1, moduli[1])?];
     let each = long.fit_each(&curves, |_| ());
-    assert!(each.iter().all(|fit| matches!(fit, Err(Error::WrongLength { len: 3, expected: 2, .. }))), "{each:?}");
-    assert!(matches!(long.fit(&curves), Err(Error::WrongLength { len: 3, expected: 2, .. })));
+    assert!(
+        each.iter()
+            .all(|fit| matches!(fit, Err(Error::Contact(ContactError::WrongLength { len: 3, expected: 2, .. })))),
+        "{each:?}"
+    );
+    assert!(matches!(long.fit(&curves), Err(Error::Contact(ContactError::WrongLength { len: 3, expected: 2, .. }))));
     // values without a coordinate, known or as a start
     for (name, values) in
         [("stiffness", [0.0, -0.1]), ("E0", [0.0, -1.0]), ("tau", [0.0, f64::NAN]), ("contact point", [f64::NAN; 2])]
@@ -79,7 +84,7 @@ fn each_curve_has_its_own_spring_contact_point_and_start() -> Result<()> {
             for refused in [with.fit(&[curve(0, moduli[0])?]).map(drop), with.respond(&experiment, &body).map(drop)] {
                 let is_named = match &refused {
                     Err(Error::ParameterOutOfRange { name: named, .. }) => named == name,
-                    Err(Error::OutOfRange { field, .. }) => field.ends_with(name),
+                    Err(Error::Contact(ContactError::OutOfRange { field, .. })) => field.ends_with(name),
                     _ => false,
                 };
                 assert!(is_named, "{name} {of:?}: {refused:?}");
@@ -174,6 +179,6 @@ fn pictures_show_each_curve_and_refuse_others() -> Result<()> {
     assert_eq!(picture.size(), [3600, 800]);
     // all of it is not one colour
     assert!(picture.rgb().chunks(3).any(|pixel| pixel != &picture.rgb()[..3]));
-    assert!(matches!(fit.picture(1), Err(Error::NoCurve { curve: 1, curves: 1 })));
+    assert!(matches!(fit.picture(1), Err(Error::Contact(ContactError::CountOutOfRange { value: 1, .. }))));
     Ok(())
 }

@@ -1,5 +1,6 @@
 //! What a fit states of its parameters.
 
+use viscocontact::Error as ContactError;
 use viscocontact::prelude::*;
 use viscocontact::states::{ElasticStates, Reach, Sweep};
 use viscocontact_identify::{Curve, Error, Experiment, FitWarning, Identification, Model, Nuisance, Protocol, ranked};
@@ -34,7 +35,7 @@ fn profile_intervals_are_the_others_where_the_sum_of_squares_is_a_parabola() {
     let (profile, plain) = (fit.profile_interval("Einf", 0.95).unwrap(), fit.estimate("Einf").unwrap().interval);
     assert!(profile[0] < 0.8 * plain[0] && profile[1] < plain[1], "{profile:?} {plain:?}");
     assert!(matches!(fit.profile_interval("alpha", 0.95), Err(Error::UnknownParameter { .. })));
-    assert!(matches!(fit.profile_interval("tau", 1.0), Err(Error::OutOfRange { .. })));
+    assert!(matches!(fit.profile_interval("tau", 1.0), Err(Error::Contact(ContactError::OutOfRange { .. }))));
 }
 
 /// Two curves of other speeds leave less doubt than either, as their information adds up.

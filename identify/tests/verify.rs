@@ -1,3 +1,4 @@
+use viscocontact::Error as ContactError;
 use viscocontact::prelude::*;
 use viscocontact_identify::{Error, Experiment, Identification, Model, Nuisance, Protocol, Result};
 
@@ -25,7 +26,10 @@ fn the_stepper_gives_the_forces_of_a_fit_and_shows_a_wrong_tip() -> Result<()> {
         println!("{:.2e} {:.2e}", same.difference, other.difference);
         assert!(same.difference < 2e-3 && other.difference > 0.02, "{:e} {:e}", same.difference, other.difference);
         assert_eq!(same.force.len(), fit.samples(0).len());
-        assert!(matches!(fit.verify(1, &scene(1.4)), Err(Error::NoCurve { curve: 1, curves: 1 })));
+        assert!(matches!(
+            fit.verify(1, &scene(1.4)),
+            Err(Error::Contact(ContactError::CountOutOfRange { value: 1, .. }))
+        ));
     }
     Ok(())
 }

@@ -231,7 +231,7 @@ impl Curve {
         let correction =
             choice("correction", correction, &[("step", Step), ("half_ramp", HalfRamp), ("factor", Factor)])?;
         let of = free(py, || id::usual::hold_relaxation(&self.of, contact_point, correction)).or_raise()?;
-        Ok(dict! { py; of { equilibrium, relaxing, time }, "glassy": of.glassy() })
+        Ok(dict! { py; of { equilibrium, glassy, time }, "relaxing": of.glassy - of.equilibrium })
     }
 
     /// The experiment.

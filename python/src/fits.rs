@@ -257,7 +257,7 @@ getters! {Fit.fit, of:
     /// Number of curves.
     curves: usize = of.curves().len();
     /// Coefficient of the autoregressive noise; None of white noise.
-    autoregression: Option<f64> = of.autoregression();
+    autoregression: Option<f64> = of.autoregression_of(0);
     /// Iterations of the search.
     iterations: usize = of.iterations();
     /// Samples with the tip in contact.

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, count_within};
 use crate::experiment::Curve;
 use crate::statistics::{is_flat, line, mean, range, scatter};
 
@@ -45,9 +45,7 @@ impl Curve {
     pub fn check(&self) -> Result<()> {
         let (drive, force) = (self.experiment.protocol.drive(), self.force());
         let (points, [first, last]) = (force.len(), range(drive));
-        if points < LEAST_POINTS {
-            return Err(Error::ShortCurve { points, minimum: LEAST_POINTS });
-        }
+        count_within("points of the curve", points, points >= LEAST_POINTS, "10 or more: measure at a higher rate")?;
         if is_flat(force) {
             return Err(Error::NoContact { curve: 0 });
         }

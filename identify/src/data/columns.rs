@@ -6,19 +6,19 @@ use viscocontact::{Error as ContactError, TextError};
 use crate::data::Recording;
 use crate::error::{Error, Result};
 
-const fn wanted(name: &'static str, words: &'static [&'static str], quantity: Quantity) -> WantedColumn {
-    WantedColumn { name, words, others: &["rate", "speed", "velocity"], quantity, by_unit: false }
+/// The unit alone tells times and forces, but not which length one is.
+const fn wanted(name: &'static str, words: &'static [&'static str], quantity: Quantity, by_unit: bool) -> WantedColumn {
+    WantedColumn { name, words, others: &["rate", "speed", "velocity"], quantity, by_unit }
 }
 
-const TIME: WantedColumn = WantedColumn { by_unit: true, ..wanted("time", &["t", "time"], Quantity::TIME) };
-const FORCE: WantedColumn =
-    WantedColumn { by_unit: true, ..wanted("force", &["f", "force", "load", "p"], Quantity::FORCE) };
+const TIME: WantedColumn = wanted("time", &["t", "time"], Quantity::TIME, true);
+const FORCE: WantedColumn = wanted("force", &["f", "force", "load", "p"], Quantity::FORCE, true);
 const DEFLECTION: WantedColumn =
-    wanted("deflection", &["deflection", "defl", "vdeflection", "cantilever"], Quantity::LENGTH);
+    wanted("deflection", &["deflection", "defl", "vdeflection", "cantilever"], Quantity::LENGTH, false);
 const DRIVE: WantedColumn =
-    wanted("drive", &["z", "zsnsr", "height", "drive", "position", "piezo", "base", "stage"], Quantity::LENGTH);
+    wanted("drive", &["z", "zsnsr", "height", "drive", "position", "piezo", "base", "stage"], Quantity::LENGTH, false);
 const DEPTH: WantedColumn =
-    wanted("depth", &["depth", "indentation", "δ", "delta", "h", "displacement into"], Quantity::LENGTH);
+    wanted("depth", &["depth", "indentation", "δ", "delta", "h", "displacement into"], Quantity::LENGTH, false);
 
 impl Recording {
     /// [`Recording::from_csv`] of a table that was read before, where its columns are to be chosen or named

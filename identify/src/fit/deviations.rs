@@ -51,7 +51,8 @@ pub(super) fn limit(name: &str, value: f64, scale: f64) -> &'static str {
     match name {
         "Einf" if scale >= LITTLE => "Einf = 0: no equilibrium",
         "E0" | "Einf" => "E0 = Einf: no relaxation",
-        "alpha" | "beta" if value < 0.5 => "an exponent of 0: no relaxation",
+        "alpha" if value < 0.5 => "an exponent of 0: no relaxation",
+        "beta" if value < 0.5 => "an exponent of 0: a power law",
         "alpha" | "beta" => "an exponent of 1: one relaxation time",
         "stiffness" => "a rigid spring",
         name if name.starts_with("tau") => "a time without effect, or beyond the data",

@@ -23,9 +23,8 @@ impl Fit {
     /// If the parameter was not fitted, or `confidence` is outside (0, 1).
     pub fn profile_interval(&self, name: &str, confidence: f64) -> Result<[f64; 2]> {
         within("confidence", confidence, confidence > 0.0 && confidence < 1.0, "> 0 and < 1")?;
-        let names = || self.estimates.iter().map(|e| e.name.clone()).collect::<Vec<_>>();
         let index = self.problem.parameters.iter().position(|of| of.is_free && of.name == name);
-        let index = index.ok_or_else(|| unknown(name, &names()))?;
+        let index = index.ok_or_else(|| unknown(name, self.estimates.iter().map(|own| &own.name)))?;
         let threshold = (self.sigma * student(confidence, self.freedom.max(1.0))).powi(2);
         let ends = [-1.0, 1.0].map(|side| self.profile_end(index, side, threshold, ENOUGH).0);
         self.goes_on().map(|()| ends)

@@ -18,7 +18,7 @@ use faer::Mat;
 use viscocontact::rheology::Material;
 
 use crate::bounds::Bounds;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, count_within};
 use crate::experiment::{Curve, Experiment};
 use crate::forward::Sample;
 use crate::identification::Identification;
@@ -226,8 +226,9 @@ impl Fit {
 
     /// The experiment of a curve of this index.
     pub(crate) fn experiment(&self, curve: usize) -> Result<&Experiment> {
-        let none = Error::NoCurve { curve, curves: self.curves.len() };
-        self.curves.get(curve).map(Curve::experiment).ok_or(none)
+        let allowed = "below the number of curves: the first is curve 0";
+        count_within("index of a curve", curve, curve < self.curves.len(), allowed)?;
+        Ok(&self.curves[curve].experiment)
     }
 
     /// Standard deviation of the noise \[N\]: of its independent part, if it is autoregressive.
@@ -239,11 +240,6 @@ impl Fit {
     /// Standard deviation of the noise of a curve \[N\].
     pub fn sigma_of(&self, curve: usize) -> f64 {
         self.sigma / self.problem.parts.get(curve).map_or(1.0, |part| part.scale)
-    }
-
-    /// The autoregressive coefficient of the first curve, if the noise has one; [`Fit::autoregression_of`] is that of another curve.
-    pub fn autoregression(&self) -> Option<f64> {
-        self.autoregression_of(0)
     }
 
     /// The autoregressive coefficient of the noise of a curve, if it has one.

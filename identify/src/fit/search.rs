@@ -16,7 +16,7 @@ use crate::identification::Identification;
 use crate::model::Model;
 use crate::noise::Noise;
 use crate::parameters::Property;
-use crate::problem::{LONG, Problem};
+use crate::problem::{ENOUGH, LONG, Problem, ROUGH};
 use crate::start::starts;
 use crate::statistics::{is_flat, means, scatter};
 
@@ -151,7 +151,8 @@ impl Identification {
         });
         self.watch.goes_on()?;
         let start = inside.iter().map(|(.., coordinates)| coordinates.clone());
-        let rough = problem.rough();
+        // few samples, on which a search is cheap
+        let rough = problem.thinned(ROUGH).map(|few| Problem { enough: ENOUGH[1], ..few });
         let some = rough.as_ref().unwrap_or(problem);
         let mut best = self.least(some, start.clone().chain(starts(some)?), AGREED.max(some.enough));
         if rough.is_some() {

@@ -252,15 +252,14 @@ impl<'a, const N: usize> Cycle<'a, N> {
             }
             let past = self.decayed(&self.moments, |term| term.force);
             let is_fresh = self.nodes[self.nodes.len() - 1].fresh && next.is_none();
-            let (tip, depth_before) = (self.tip, self.depth);
+            let (tip, give, depth_before) = (self.tip, self.give, self.depth);
             // the share of the way to the next column, the edge, and the growth of a contact that ends with the tip at a depth
             let at = |depth: Real<N>| {
                 let (share, extent) = match width {
-                    Some((width, travel)) if travel.value() > 0.0 => {
-                        let share = (depth - released) / travel;
+                    Some((width, travel)) => {
+                        let share = if travel.value() > 0.0 { (depth - released) / travel } else { one };
                         (share, start.0 + share * width)
                     }
-                    Some((width, _)) => (one, start.0 + width),
                     None => (zero, start.0 + depth - released),
                 };
                 tip.at(extent).map(|elastic| {
@@ -268,7 +267,6 @@ impl<'a, const N: usize> Cycle<'a, N> {
                     (share, extent, elastic, growth)
                 })
             };
-            let give = self.give;
             let excess = |depth: Real<N>| {
                 let (share, .., growth) = at(depth)?;
                 let change = |k: usize| sums[2][k] + share * sums[3][k];
@@ -284,15 +282,10 @@ impl<'a, const N: usize> Cycle<'a, N> {
             let depth = if self.springs() {
                 let deepest = z.value().max(released.value());
                 let limit = tip.last_depth + (released - start.0).value();
-                let end = if width.is_some() {
-                    after
-                } else if deepest > limit {
-                    Real::from(limit)
-                } else {
-                    z
-                };
+                let is_limited = width.is_none() && deepest > limit;
+                let end = width.map_or(if is_limited { Real::from(limit) } else { z }, |_| after);
                 // the spring pushes deeper than the states reach
-                if width.is_none() && deepest > limit && excess(end)?.value() > 0.0 {
+                if is_limited && excess(end)?.value() > 0.0 {
                     return Err(tip.beyond(z.value()));
                 }
                 let near = (near - released.value()) / (end - released).value();
@@ -302,9 +295,8 @@ impl<'a, const N: usize> Cycle<'a, N> {
             };
             let (share, extent, elastic, growth) = at(depth)?;
             std::mem::swap(&mut self.part, &mut self.moments);
-            let to_next = next.is_some();
             self.append(time, depth, (extent, elastic), growth, |columns, i, free| {
-                if to_next { free + share * (columns.state(i, one) - free) } else { zero }
+                if next.is_some() { free + share * (columns.state(i, one) - free) } else { zero }
             });
             std::mem::swap(&mut self.part, &mut self.moments);
             return Ok(());
