@@ -111,7 +111,7 @@ fn energies_in_space_are_those_on_states() {
     let mut last = f64::INFINITY;
     for steps in [16, 64] {
         let scene = ViscoelasticContact::builder(grid.clone()).geometry(&shape).material(material.clone());
-        let scene = scene.kernel(kernel.clone()).settings(settings.clone());
+        let scene = scene.kernel(kernel.clone()).settings(settings);
         let mut space = FrictionContact::new(scene, Coulomb::new(0.5).unwrap()).unwrap();
         let mut levels = StatesContact::new(&states, &material).unwrap().with_friction(0.5).unwrap();
         let mut energies = [[0.0; 4]; 2];

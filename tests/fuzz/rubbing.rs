@@ -1,6 +1,8 @@
 //! Contacts with friction in space: any limit, load and motion.
 
-use viscocontact::friction::{Component, Coulomb, FrictionContact, FrictionLimit, Outcome as Step, ShearLoad};
+use viscocontact::friction::{
+    Component, Coulomb, FrictionContact, FrictionLimit, LateralWork, Outcome as Step, ShearLoad,
+};
 use viscocontact::prelude::*;
 
 use crate::engine::{Outcome, Target, Verdict, known};
@@ -69,7 +71,9 @@ fn steps(source: &mut Source) -> Verdict {
         let shear = ShearLoad { components: [(); 3].map(|()| component(source, force, length)) };
         match contact.step(dt, load, shear) {
             Ok(Step::Holds(report)) => {
-                known("shear", contact.motion().into_iter().chain(contact.force()).chain(contact.work()))?;
+                known("shear", contact.motion().into_iter().chain(contact.force()))?;
+                let LateralWork { work, slip, stored, creep, .. } = contact.lateral_work();
+                known("work", [work, slip, stored, creep])?;
                 known("fields", contact.traction().into_iter().chain(contact.slip()).flatten())?;
                 known("report", [report.residual, report.convolution_equivalents])?;
                 taken += 1;
