@@ -121,7 +121,7 @@ pub(super) fn fits(t: &mut Table) {
     t.row(of_infinite, Value, "modulus of the law = -inf → finite at all times from t = 0 on");
     let maps = [respond(Model::Zener, &ZENER, &experiment), curve([0.0, 1.0e-6], vec![0.0; 100], tip())];
     let lists = zener.clone().contact_point(vec![Nuisance::Fitted; 3]).fit_each(&maps, |_| {});
-    t.row(lists.into_iter().last().unwrap(), Value, "contact point: 3 values given, 2 needed");
+    t.row(lists.into_iter().last().unwrap(), Value, "contact point: 3 given, 2 needed");
     let [first, second] = <[_; 2]>::try_from(zener.fit_each(&maps, |_| {})).unwrap();
     assert!(first.is_ok());
     t.row(second, Value, "curve 0: the force nowhere rises…: check the sign of the force…");
@@ -144,7 +144,7 @@ pub(super) fn fits(t: &mut Table) {
     t.row(tips::sphere(1.0e200), Value, "sphere radius = 1e200 → in [1e-100, 1e100] m");
     let rising = |count: i32, sign: f64| (0..count).map(|k| sign * 1.0e-9 * f64::from(k)).collect::<Vec<_>>();
     let modulus = |count: i32, sign: f64, tip, part| usual::loading_modulus(&curve([0.0, 1.0e-6], rising(count, sign), tip), part);
-    t.row(modulus(4, 1.0, tip(), None), Value, "a curve of 4 points is too short: at least 5 are needed…");
+    t.row(modulus(4, 1.0, tip(), None), Value, "points that are read = 4 → 5 or more: measure at a higher rate");
     t.row(modulus(50, 1.0, table, Some(0.0)), Value, "curve 0: the depth of 1.00e-6 m is beyond…: sweep it further…");
     t.row(modulus(50, -1.0, tip(), None), Value, "curve 0: the force nowhere rises…: check the sign of the force…");
 }
