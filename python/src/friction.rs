@@ -273,7 +273,8 @@ impl FrictionContact {
     /// Where the work along the surface went since the contact was made [J]: "work" = "slip" + "stored" + "creep".
     #[getter]
     fn lateral_work<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let of = free(py, || slf.contact.lateral_work());
+        let contact = &slf.contact;
+        let of = free(py, || contact.lateral_work());
         Ok(dict! { py; of { work, slip, stored, creep } })
     }
 
