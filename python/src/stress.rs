@@ -113,7 +113,7 @@ impl SubsurfaceStress {
     /// Where a quantity has its maximum between the depths [m]: "value" [Pa], "position" [m], "components", and whether it is
     /// "at_end_of_depths", so that more may lie beyond.
     #[pyo3(signature = (depths, quantity="von_mises"))]
-    fn greatest<'py>(&self, py: Python<'py>, depths: Vec<f64>, quantity: &str) -> PyResult<Dict<'py>> {
+    fn maximum<'py>(&self, py: Python<'py>, depths: Vec<f64>, quantity: &str) -> PyResult<Dict<'py>> {
         let quantity = choice("quantity", quantity, &QUANTITIES)?;
         let peak = free(py, || self.0.maximum(&depths, quantity)).or_raise()?;
         Ok(dict! { py; peak { value, position, at_end_of_depths }, "components": peak.stress.components().to_vec() })
