@@ -1,11 +1,12 @@
 //! Where the work along the surface goes, against the springs and dashpots of a dense body.
 
-use viscocontact::friction::{Coulomb, FrictionContact, LateralWork, Outcome, ShearLoad};
+use viscocontact::friction::{Coulomb, FrictionContact, LateralWork, ShearLoad};
 use viscocontact::prelude::*;
 use viscocontact::states::{Reach, StatesContact, Sweep};
 
 use super::dense::relaxation;
 use super::space::{half_space, pair, periodic};
+use super::space_known::{holds, tight};
 
 const N: usize = 12;
 const STEPS: [u32; 3] = [32, 64, 128];
@@ -56,9 +57,8 @@ fn balance(is_periodic: bool, is_pressed: bool, steps: u32) -> [f64; 4] {
     let (nu, side, relaxation) = (0.3, 1.0 / N as f64, relaxation(0));
     let grid = Grid::square(N, 1.0).unwrap();
     let shape = FnGeometry::new(|x, y| 0.5 * (x * x + y * y));
-    let settings = Settings::default().with_tolerance(1e-12).with_edge(Edge::Allow);
     let mut scene =
-        ViscoelasticContact::builder(grid.clone()).geometry(&shape).material(pair(&relaxation, nu)).settings(settings);
+        ViscoelasticContact::builder(grid.clone()).geometry(&shape).material(pair(&relaxation, nu)).settings(tight());
     if is_periodic {
         scene = scene.kernel(InfluenceKernel::periodic(&grid).unwrap());
     }
@@ -87,8 +87,7 @@ fn balance(is_periodic: bool, is_pressed: bool, steps: u32) -> [f64; 4] {
         let carried = if is_pressed { force } else { 0.4 * force * (0.3 + 0.7 * (-t).exp()) };
         let [q1, q2] = [0.8 * (1.5 * t + 0.2).sin(), 0.3 * (3.0 * t).sin()].map(|part| 0.35 * carried * part);
         let length = if step == 0 { 0.0 } else { dt };
-        let outcome = contact.step(length, pressed(t), ShearLoad::force([q1, q2]).with_torque(0.1 * q1));
-        assert!(matches!(outcome.unwrap(), Outcome::Holds(_)), "{step}");
+        holds(contact.step(length, pressed(t), ShearLoad::force([q1, q2]).with_torque(0.1 * q1)).unwrap());
         body.step(length, &contact.traction().concat());
         let work = contact.lateral_work();
         largest = largest.max(work.stored);
@@ -106,12 +105,12 @@ fn energies_in_space_are_those_on_states() {
     let (grid, material) = (Grid::new([192, 1], [1.0, 1.0]).unwrap(), pair(&relaxation(0), 0.5));
     let shape = FnGeometry::new(|x, _| 2.0 * x * x);
     let kernel = InfluenceKernel::line(&grid, 3.0).unwrap();
-    let (settings, force) = (Settings::default().with_tolerance(1e-11).with_edge(Edge::Allow), 0.05);
+    let force = 0.05;
     let states = Sweep::new(grid.clone(), &shape).kernel(kernel.clone()).run(Reach::Level(8.0 * force)).unwrap();
     let mut last = f64::INFINITY;
     for steps in [16, 64] {
         let scene = ViscoelasticContact::builder(grid.clone()).geometry(&shape).material(material.clone());
-        let scene = scene.kernel(kernel.clone()).settings(settings);
+        let scene = scene.kernel(kernel.clone()).settings(tight());
         let mut space = FrictionContact::new(scene, Coulomb::new(0.5).unwrap()).unwrap();
         let mut levels = StatesContact::new(&states, &material).unwrap().with_friction(0.5).unwrap();
         let mut energies = [[0.0; 4]; 2];
@@ -119,8 +118,7 @@ fn energies_in_space_are_those_on_states() {
             let phase = 3.0 * f64::from(step) / f64::from(steps);
             let (dt, pressed) = (if step == 0 { 0.0 } else { 3.0 / f64::from(steps) }, force * (1.0 + 0.3 * phase));
             let along = 0.3 * force * (2.5 * phase + 0.1).sin();
-            let outcome = space.step(dt, Load::force(pressed), ShearLoad::force([along, 0.0])).unwrap();
-            assert!(matches!(outcome, Outcome::Holds(_)), "{step}");
+            holds(space.step(dt, Load::force(pressed), ShearLoad::force([along, 0.0])).unwrap());
             levels.step_sheared(dt, Load::force(pressed), Load::force(along)).unwrap();
             energies = [space.lateral_work(), levels.lateral_work()]
                 .map(|LateralWork { work, slip, stored, creep, .. }| [work, slip, stored, creep]);

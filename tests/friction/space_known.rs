@@ -12,11 +12,11 @@ use viscocontact::states::{ElasticStates, StatesContact};
 use super::dense::relaxation;
 use super::space::pair;
 
-fn tight() -> Settings {
+pub fn tight() -> Settings {
     Settings::default().with_tolerance(1e-12).with_edge(Edge::Allow)
 }
 
-fn holds(outcome: Outcome) {
+pub fn holds(outcome: Outcome) {
     assert!(matches!(outcome, Outcome::Holds(_)), "{outcome:?}");
 }
 

@@ -39,17 +39,13 @@ impl Levels {
     pub(super) fn level_of(&self, states: &ElasticStates, demand: Demand, lead: f64) -> Wanted {
         let compliance = self.history.rule().compliance();
         match demand {
-            Demand::Force(force) => Wanted {
-                level: self.level_of_force(force * compliance + lead),
-                give: f64::INFINITY,
-                sum: 0.0,
-                lead,
-                at_once: false,
-            },
+            Demand::Force(force) => {
+                Wanted { level: self.level_of_force(force * compliance + lead), give: f64::INFINITY, sum: 0.0, lead }
+            }
             Demand::Depth { depth, give } => {
                 let give = give / compliance;
                 let [level, sum] = self.level_of_depth(states, give, depth + give * lead);
-                Wanted { level, give, sum, lead, at_once: false }
+                Wanted { level, give, sum, lead }
             }
         }
     }

@@ -36,8 +36,6 @@ pub(super) struct Wanted {
     pub(super) give: f64,
     pub(super) sum: f64,
     lead: f64,
-    /// Whether the step takes no time.
-    at_once: bool,
 }
 
 /// Levels from the top of the group before to its own, with one past.
@@ -175,7 +173,7 @@ impl Levels {
             let what = "a jump of the load that changes the pressure";
             let level = self.level_without_response(demand);
             let level = level.ok_or(Error::Step(StepError::NoElasticResponse { time, what }))?;
-            return Ok(Wanted { level, give: f64::INFINITY, sum: 0.0, lead: 0.0, at_once: true });
+            return Ok(Wanted { level, give: f64::INFINITY, sum: 0.0, lead: 0.0 });
         }
         if !compliance.is_finite() {
             return Err(Error::Step(StepError::Overflow { time, what: "the compliance" }));
@@ -219,7 +217,7 @@ impl Levels {
         if level > 0.0 && level < states.first_level() * (1.0 - ROUNDING) {
             return Err(StatesError::Below { time, level, first: states.first_level() }.into());
         }
-        Ok(Wanted { at_once: dt == 0.0, ..wanted })
+        Ok(wanted)
     }
 
     /// The level after a jump of a body without elastic response, which moves no surface: the present level if the
@@ -250,14 +248,13 @@ impl Levels {
         &mut self,
         states: &ElasticStates,
         demand: Demand,
-        Wanted { level, lead, at_once, .. }: Wanted,
+        Wanted { level, lead, .. }: Wanted,
         along: Option<Demand>,
     ) {
         if self.history.rule().compliance() > 0.0 {
             let edge = self.level;
             let swept = if self.history.leads() { self.swept(level) } else { 0.0 };
             self.cut_at(states, level);
-            let crept = at_once.then(|| self.crept_along());
             if lead > 0.0 {
                 self.lead_groups(self.groups_to(edge)..self.groups_to(level), lead, swept);
             }
@@ -266,7 +263,6 @@ impl Levels {
             let sheared = self.shear.as_ref().map_or(&[][..], Shear::displacements);
             self.history.commit(&self.trial, sheared);
             self.passed = self.history.differences_after(self.passed, swept);
-            crept.into_iter().for_each(|crept| self.work_at_once(crept));
         } else if level == 0.0 {
             self.release();
             self.release_shear(along);

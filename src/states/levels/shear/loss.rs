@@ -73,13 +73,13 @@ impl Levels {
     }
 
     /// What has crept of the work along the surface.
-    pub(in crate::states::levels) fn crept_along(&self) -> f64 {
+    pub(in crate::states) fn crept_along(&self) -> f64 {
         self.shear.as_ref().map_or(0.0, |shear| shear.work - shear.lost - self.stored_along())
     }
 
     /// In a step of no time nothing creeps: its work is what bodies store and lose by slip, also where contacts grow or
     /// shrink in it, so that the force is no line in the displacement.
-    pub(in crate::states::levels) fn work_at_once(&mut self, crept: f64) {
+    pub(in crate::states) fn work_at_once(&mut self, crept: f64) {
         let stored = self.stored_along();
         if let Some(shear) = &mut self.shear {
             shear.work = crept + stored + shear.lost;
