@@ -9,7 +9,7 @@ use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use rustfft::{Fft, FftPlanner};
 
 use crate::Grid;
-use crate::parallel::{cut, fork, lanes};
+use crate::parallel::{Task, cut, for_each_share, fork, lanes};
 
 /// Complex transforms of lines of one length that lie one after the other.
 #[derive(Clone)]
@@ -91,11 +91,26 @@ impl Plane {
     }
 }
 
-/// Transforms of real planes, row-major, of one size. Coefficients: for each k2 from 0 to n2/2 all k1, the negative
-/// ones after the positive; the other k2 have the conjugate coefficients.
+/// A transform of lines with one scratch for each lane.
+struct InLanes<'a>(&'a dyn Fft<f64>);
+
+impl Task for InLanes<'_> {
+    type Lane = Vec<Complex64>;
+    type Item = Complex64;
+
+    #[inline(always)]
+    fn run(&self, _: usize, scratch: &mut Vec<Complex64>, lines: &mut [Complex64]) {
+        self.0.process_with_scratch(lines, scratch);
+    }
+}
+
+/// Transforms of real planes, row-major, of one size, which allocate nothing. Coefficients: for each k2 from 0 to n2/2
+/// all k1, the negative ones after the positive; the other k2 have the conjugate coefficients.
 #[derive(Clone)]
 pub(crate) struct RealPlane {
     along1: Lines,
+    /// The scratch of lines along x1, for each lane.
+    scratch1: Vec<Vec<Complex64>>,
     forward2: Arc<dyn RealToComplex<f64>>,
     inverse2: Arc<dyn ComplexToReal<f64>>,
     /// A row, its coefficients, and the scratch of either transform.
@@ -112,7 +127,10 @@ impl RealPlane {
         let (forward2, inverse2) = (planner.plan_fft_forward(n2), planner.plan_fft_inverse(n2));
         let scratch = vec![Complex64::ZERO; forward2.get_scratch_len().max(inverse2.get_scratch_len())];
         let (row, half_row) = (forward2.make_input_vec(), forward2.make_output_vec());
-        RealPlane { along1: Lines::new(n1), forward2, inverse2, row, half_row, scratch }
+        let along1 = Lines::new(n1);
+        let of_lane = along1.forward.get_inplace_scratch_len().max(along1.inverse.get_inplace_scratch_len());
+        let scratch1 = vec![vec![Complex64::ZERO; of_lane]; lanes(n1 * half_row.len())];
+        RealPlane { along1, scratch1, forward2, inverse2, row, half_row, scratch }
     }
 
     /// Lengths along x1 and x2.
@@ -138,14 +156,23 @@ impl RealPlane {
             count = i + 1;
         }
         coefficients.chunks_exact_mut(n1).for_each(|line| line[count..].fill(Complex64::ZERO));
-        self.along1.forward(coefficients);
+        self.transform_lines(false, coefficients);
+    }
+
+    fn transform_lines(&mut self, is_inverse: bool, coefficients: &mut [Complex64]) {
+        let RealPlane { along1: Lines { forward, inverse }, scratch1, half_row, .. } = self;
+        let plan = if is_inverse { inverse } else { forward };
+        if plan.len() > 1 {
+            let of_lane = half_row.len().div_ceil(scratch1.len()) * plan.len();
+            for_each_share(&InLanes(&**plan), scratch1, coefficients, of_lane);
+        }
     }
 
     /// The inverse of [`RealPlane::forward`], times the number of values; of the first rows, and of the first values
     /// of each.
     pub(crate) fn inverse<'a>(&mut self, coefficients: &mut [Complex64], rows: impl Iterator<Item = &'a mut [f64]>) {
         let n1 = self.along1.len();
-        self.along1.inverse(coefficients);
+        self.transform_lines(true, coefficients);
         for (i, row) in rows.enumerate() {
             let of = |k2: usize| coefficients[k2 * n1 + i];
             real_row(&*self.inverse2, &of, &mut self.half_row, &mut self.row, &mut self.scratch);

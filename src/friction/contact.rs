@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use crate::contact::{Builder, Snapshot, Step, StepError, StepReport, TimeRule, ViscoelasticContact};
+use crate::equilibrium::Held;
 use crate::equilibrium::constraints::validate_loads;
 use crate::error::{Error, FrictionError, Result, Special, UserError};
 use crate::friction::history::ShearHistory;
@@ -18,8 +19,10 @@ use crate::friction::state::State;
 use crate::hereditary::Interpolant;
 use crate::load::Load;
 use crate::load::lateral_work::LateralWork;
+use crate::parallel::in_pool;
 use crate::run::doubled::SavedRun;
 use crate::run::doubled::plain::Plain;
+use crate::solver::RigidMotion;
 
 /// Loads beyond what friction carries by less than this part are carried: rounding.
 const ROUNDING: f64 = 1e-9;
@@ -65,11 +68,9 @@ pub struct FrictionContact {
     pub(super) saved_run: Option<Arc<SavedRun<Plain>>>,
 }
 
-/// What a step needs, on the rectangle but for the gap.
+/// What a step needs, on the rectangle.
 #[derive(Debug, Clone, Default)]
 struct StepFields {
-    /// The gap before the step, on the whole grid.
-    gap: Vec<f64>,
     places: Vec<[f64; 2]>,
     bound: Vec<f64>,
     entered: Vec<f64>,
@@ -103,7 +104,7 @@ impl FrictionContact {
             state: State::new(normal.computation.state.history.rule()),
             // of no use before bodies touch
             kernel: TangentialKernel::new(&response, [1; 2]),
-            step: StepFields { gap: vec![0.0; normal.grid().len()], ..StepFields::default() },
+            step: StepFields::default(),
             tolerance: normal.settings().tolerance,
             normal,
             limit: Arc::new(limit),
@@ -145,13 +146,13 @@ impl FrictionContact {
         shear.validate()?;
         let normal = &mut self.normal;
         normal.snapshot_into(&mut self.start);
-        normal.fields().gap_into(&mut self.step.gap)?;
         let loads = [load];
         let step = Step { cancelled: Some(cancelled), tolerance, ..normal.request_next(dt, &loads)? };
         validate_loads(&normal.scene.ground, step.request())?;
         let length = step.interval.dt;
         let report = normal.take(step)?;
-        let outcome = self.shear_to(cancelled, length, shear, report, tolerance);
+        let cells = self.normal.grid().len();
+        let outcome = in_pool(cells, || self.shear_to(cancelled, length, shear, report, tolerance));
         if !matches!(outcome, Ok(Outcome::Holds(_))) {
             self.normal.restore(&self.start)?;
         }
@@ -245,7 +246,7 @@ impl FrictionContact {
     pub(super) fn fit_to_region(&mut self) {
         let (grid, region) = (self.normal.grid(), self.state.region);
         let ([_, columns], n) = (grid.cells(), region.len());
-        let StepFields { gap, places, bound, entered, drift, free, trial, work } = &mut self.step;
+        let StepFields { places, bound, entered, drift, free, trial, work } = &mut self.step;
         if n > 0 {
             self.kernel = TangentialKernel::new(&self.response, region.cells);
         }
@@ -254,21 +255,28 @@ impl FrictionContact {
         [drift, free].into_iter().for_each(|field| field.resize(2 * n, 0.0));
         trial.resize(n);
         work.resize(n);
-        gap.resize(grid.len(), 0.0);
     }
 
     /// Finds the bounds, and the share of the step for which each cell is in contact.
     fn bind(&mut self) -> Result<()> {
-        let StepFields { gap, places, bound, entered, .. } = &mut self.step;
+        let StepFields { places, bound, entered, .. } = &mut self.step;
         let ([_, columns], pressure, region) = (self.normal.grid().cells(), self.normal.pressure(), self.state.region);
-        let [before, now] = [&self.start.state, &self.normal.computation.state].map(|state| &state.held.current);
+        let normal = &self.normal.computation.state;
+        let (Held { region: computed, indenter, current, .. }, before) = (&normal.held, &normal.previous);
+        let (initial, [start, end]) = (indenter.gap(), [before, current].map(|state| state.motions[0]));
         // by how much the body came nearer at a place
-        let change = now.motions[0] - before.motions[0];
+        let change = end - start;
         let closed = |k: usize| change.at(places[k]).max(f64::MIN_POSITIVE);
+        // the gap before the step; what is not computed is not met
+        let lowered = RigidMotion { approach: start.approach - initial.datum, tilt: start.tilt };
+        let gap = |k: usize, at: usize| {
+            let own = computed.find([at / columns, at % columns]);
+            own.map_or(f64::INFINITY, |own| initial.above[at] + normal.history.trial()[own] - lowered.at(places[k]))
+        };
         // bodies that were apart touch first where their gap less what closes it is least
         let was_apart = before.solution.pressure.iter().all(|p| *p == 0.0);
         let touched = if was_apart {
-            let left = region.on_grid(columns).enumerate().map(|(k, at)| gap[at] / closed(k));
+            let left = region.on_grid(columns).enumerate().map(|(k, at)| gap(k, at) / closed(k));
             left.fold(f64::INFINITY, f64::min).clamp(0.0, 1.0)
         } else {
             0.0
@@ -279,7 +287,7 @@ impl FrictionContact {
             if !(0.0..=LARGEST).contains(&bound[k]) {
                 return Err(not_a_limit(bound[k]));
             }
-            let waited = (gap[at].max(0.0) / closed(k) - touched) / (1.0 - touched);
+            let waited = (gap(k, at).max(0.0) / closed(k) - touched) / (1.0 - touched);
             let is_met = p > 0.0 && self.state.solution.cells[k] == Cell::Apart;
             entered[k] = if is_met { 1.0 - waited.clamp(0.0, 1.0) } else { 1.0 };
         }

@@ -114,7 +114,7 @@ impl Scene {
         Some(Scene { name, body, contact, normal: history, corners, tolerance })
     }
 
-    /// Displacement, force and loss along the surface at times of a run of this tolerance whose steps end at more times.
+    /// Displacement, force, loss and work along the surface at times of a run of this tolerance whose steps end at more times.
     fn run(&self, tolerance: f64, stops: &[f64], times: &[f64]) -> std::result::Result<(Vec<[f64; 4]>, usize), String> {
         let (mut contact, mut found, mut steps) = (self.contact.clone(), Vec::new(), 0);
         let mut run = contact.follow(&*self.normal, Stepping::adaptive(tolerance), self.body.until);
@@ -148,7 +148,7 @@ fn kind_of(kind: &Kind) -> &'static str {
 #[test]
 fn sheared_runs_err_by_what_was_asked() {
     let (count, first) = (from_environment("FRICTION_RUNS", 8), from_environment("FRICTION_SEED", 0));
-    let (mut ratios, mut work): ([Ratios; 3], Ratios) = Default::default();
+    let (mut ratios, mut taken): ([Ratios; 4], Ratios) = Default::default();
     let (mut failed, mut vague, mut seed) = (Vec::new(), 0, first);
     while ratios[0].count() + failed.len() + vague < count as usize {
         seed += 1;
@@ -180,23 +180,23 @@ fn sheared_runs_err_by_what_was_asked() {
             let off = a.iter().zip(&exact).map(|(a, b)| (a[k] - b[k]).abs()).fold(0.0, f64::max);
             if greatest[k] > 0.0 { off / greatest[k] / scene.tolerance } else { 0.0 }
         };
-        if (0..3).any(|k| apart(&coarse, k) > 0.5) {
+        if (0..4).any(|k| apart(&coarse, k) > 0.5) {
             vague += 1;
-            println!("vague {}: {:?}", scene.name, [0, 1, 2].map(|k| apart(&coarse, k)));
+            println!("vague {}: {:?}", scene.name, [0, 1, 2, 3].map(|k| apart(&coarse, k)));
             continue;
         }
         let name = format!("{}, {steps} steps", scene.name);
-        (0..3).for_each(|k| ratios[k].push(apart(&found, k), &name));
-        work.push(steps as f64, &name);
+        (0..4).for_each(|k| ratios[k].push(apart(&found, k), &name));
+        taken.push(steps as f64, &name);
         if count > 20 {
-            println!("{name}: {:.2} {:.2} {:.2}", apart(&found, 0), apart(&found, 1), apart(&found, 2));
+            println!("{name}: {:.2?}", [0, 1, 2, 3].map(|k| apart(&found, k)));
         }
     }
     println!("{count} runs, {vague} with a vague reference, {} failed: {failed:#?}", failed.len());
-    for (what, ratios) in ["displacement", "force", "loss"].iter().zip(&ratios) {
+    for (what, ratios) in ["displacement", "force", "loss", "work"].iter().zip(&ratios) {
         ratios.print(what, 4);
     }
-    work.print("steps", 2);
+    taken.print("steps", 2);
     assert!(failed.is_empty());
     for ratios in &ratios {
         assert!(ratios.quantile(0.99) < 2.0 && ratios.greatest() < 3.0);
