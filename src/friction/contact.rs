@@ -49,16 +49,16 @@ const ROUNDING: f64 = 1e-9;
 /// assert!(matches!(outcome, Outcome::Slides { direction: [1.0, ..], .. }));
 /// # Ok::<(), Error>(())
 /// ```
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct FrictionContact {
     pub(super) normal: ViscoelasticContact,
     /// The normal contact before the step being tried.
-    start: Snapshot,
+    pub(super) start: Snapshot,
     pub(super) limit: Arc<dyn FrictionLimit>,
     pub(super) response: TangentialResponse,
     pub(super) state: State,
-    kernel: TangentialKernel,
-    step: StepFields,
+    pub(super) kernel: TangentialKernel,
+    pub(super) step: StepFields,
     /// Tolerance of the solver in a run.
     pub(super) tolerance: f64,
     /// Differences between outcomes of a step, over the maximum so far, that a run does not resolve.
@@ -70,7 +70,7 @@ pub struct FrictionContact {
 
 /// What a step needs, on the rectangle.
 #[derive(Debug, Clone, Default)]
-struct StepFields {
+pub(super) struct StepFields {
     places: Vec<[f64; 2]>,
     bound: Vec<f64>,
     entered: Vec<f64>,

@@ -11,11 +11,13 @@ const UPRIGHT: [Tilt; 2] = [Tilt::Fixed(0.0); 2];
 /// What acts along the surface over time: a history for the shift along x1, for that along x2, and for the twist.
 /// A [`Load::force`] is a force \[N\] or a torque \[N m\] of either sign, a [`Load::approach`] a displacement \[m\] or
 /// an angle \[rad\].
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct ShearHistory {
     /// Two, or with a twist three.
     pub(super) components: Vec<Arc<dyn LoadHistory>>,
 }
+
+clone_by_fields! { ShearHistory { components } }
 
 impl ShearHistory {
     /// Along x1 and x2, of a body that does not turn.

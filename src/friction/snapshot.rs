@@ -1,5 +1,7 @@
 //! Copies of a contact with friction in memory, to come back to.
 
+use std::sync::Arc;
+
 use crate::contact::Snapshot;
 use crate::error::Result;
 use crate::friction::contact::FrictionContact;
@@ -24,12 +26,46 @@ impl FrictionContact {
     /// If the snapshot was made of another contact; a contact and its clones may exchange theirs.
     pub fn restore(&mut self, snapshot: &FrictionSnapshot) -> Result<()> {
         self.normal.restore(&snapshot.normal)?;
-        let region = self.state.region;
-        self.state.clone_from(&snapshot.state);
         self.saved_run = None;
+        self.take_state(&snapshot.state);
+        Ok(())
+    }
+
+    fn take_state(&mut self, state: &State) {
+        let region = self.state.region;
+        self.state.clone_from(state);
         if region != self.state.region {
             self.fit_to_region();
         }
-        Ok(())
+    }
+}
+
+impl Clone for FrictionContact {
+    fn clone(&self) -> FrictionContact {
+        FrictionContact {
+            normal: self.normal.clone(),
+            start: self.start.clone(),
+            limit: Arc::clone(&self.limit),
+            response: self.response.clone(),
+            state: self.state.clone(),
+            kernel: self.kernel.clone(),
+            step: self.step.clone(),
+            history_along: self.history_along.clone(),
+            saved_run: self.saved_run.clone(),
+            ..*self
+        }
+    }
+
+    /// Of clones of one contact this takes the state alone, and allocates nothing.
+    fn clone_from(&mut self, other: &FrictionContact) {
+        if !Arc::ptr_eq(&self.normal.scene, &other.normal.scene) {
+            *self = other.clone();
+            return;
+        }
+        self.normal.go_to(&other.normal.computation.state);
+        self.take_state(&other.state);
+        (self.tolerance, self.unresolved) = (other.tolerance, other.unresolved);
+        self.history_along.clone_from(&other.history_along);
+        self.saved_run.clone_from(&other.saved_run);
     }
 }

@@ -23,6 +23,8 @@ fn main() {
     println!("tilting steps allocate nothing: ok");
     steps::elastic_solutions_allocate_nothing();
     println!("elastic solutions allocate nothing: ok");
+    steps::sheared_steps_allocate_nothing();
+    println!("steps with friction allocate nothing: ok");
     threads::steps_on_threads_allocate_blocks_of_a_queue();
     println!("steps on threads allocate blocks of a queue: ok");
     ranks::warm_steps_of_ranks_allocate_nothing();

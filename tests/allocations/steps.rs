@@ -3,6 +3,7 @@
 use crate::ALLOCATOR;
 use crate::common::{Draws, StepLoadedSphere, builder_of, sphere, sphere_on, zener};
 use stats_alloc::Region;
+use viscocontact::friction::{Coulomb, FrictionContact, Outcome, ShearHistory, ShearLoad};
 use viscocontact::prelude::*;
 use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
 
@@ -220,5 +221,30 @@ pub fn elastic_solutions_allocate_nothing() {
             let change = region.change();
             assert_eq!((change.allocations, change.reallocations), (0, 0), "{cells} {step}: {change:?}");
         }
+    }
+}
+
+/// Steps of contacts with friction, once the rectangle of cells that it works on no longer grows.
+pub fn sheared_steps_allocate_nothing() {
+    let grid = Grid::square(40, 4.0e-3).unwrap();
+    let kernels = [InfluenceKernel::half_space(&grid), InfluenceKernel::periodic(&grid)].map(Result::unwrap);
+    for kernel in kernels {
+        let name = format!("{kernel:?}");
+        let ball = builder_of(&sphere(), grid.clone(), zener()).kernel(kernel);
+        let mut contact = FrictionContact::new(ball, Coulomb::new(0.5).unwrap()).unwrap();
+        let mut step = |k: u32| {
+            let (part, normal) = (0.02 * f64::from(k % 10), Load::force(1.0 - 0.003 * f64::from(k)));
+            let shear = ShearLoad::force([part, 0.1 - part]).with_torque(1.0e-5 * part);
+            let shear = if k % 7 == 6 { ShearLoad::motion([1.0e-6 * part, 0.0]) } else { shear };
+            let outcome = contact.step(if k % 4 == 0 { 0.0 } else { 0.1 }, normal, shear).unwrap();
+            assert!(matches!(outcome, Outcome::Holds(_)), "{name}: {outcome:?}");
+        };
+        (0..3).for_each(&mut step);
+        allocates_nothing(&name, || (3..40).for_each(&mut step));
+        let along = Ramp::new(Load::force(0.0), Load::force(0.3), 1.0).unwrap();
+        contact = contact.sheared_by(ShearHistory::new(along, StepLoad::new(Load::force(0.0)).unwrap()));
+        let mut run = contact.into_follow(StepLoad::new(Load::force(0.8)).unwrap(), Stepping::adaptive(1.0e-2), 6.0);
+        (0..4).for_each(|_| _ = run.next_step().unwrap());
+        allocates_nothing(&name, || while run.next_step().unwrap().is_some() {});
     }
 }
