@@ -119,7 +119,9 @@ impl StatesContact {
     /// With groups of levels that merge where this changes force and depth by at most about `error`, relative to what
     /// they are: 1e-6 unless set. The contact area errs ten times as much. A long run on a solid has at most about
     /// 2.5/√`error` groups, whatever the number of its steps and relaxation times, and a contact law in a loop is
-    /// faster with 1e-4; on fluids, which keep all imprints, up to 6 times as many were counted. Runs with
+    /// faster with 1e-4; on fluids, which keep all imprints, up to 6 times as many were counted. With friction a
+    /// million steps of a fretting loop keep 80 groups with 1e-3 in place of 2800, and take a tenth of the time; the
+    /// loss is then off by 1e-3, the force along the surface by 2e-4. Runs with
     /// [`Stepping::adaptive`](crate::run::Stepping::adaptive) take a hundredth of their tolerance instead; 0 merges
     /// only groups with the same past.
     ///
