@@ -98,14 +98,23 @@ impl Problem<'_> {
         }
     }
 
-    /// ½ Σ (τ_before + τ)·a B Δd, the work of a motion, and −½ Σ (τ_before + τ)·g, what slip dissipates of it; the rest
-    /// is ½ Σ (τ_before + τ)·Δu, which the bodies take up. Without slip both are exact, also as contacts grow.
+    /// The work of a step and what slip dissipates of it. The bodies take up ½ Σ (τ_before + τ)·Δu with the change
+    /// Δu = a B Δd + g of their surface; of a jump this is exact, and stored. A cell that slips carries its bound while
+    /// it does: it dissipates |g| times the mean of what it carried when it began and at the end.
     pub(super) fn works(&self, before: &Solution, now: &Solution, motion: [f64; 3]) -> [f64; 2] {
         let n = self.cells();
         (0..n).fold([0.0; 2], |[work, slip], i| {
-            let mean = [0, 1].map(|axis| 0.5 * (before.of(i)[axis] + now.of(i)[axis]));
+            let [old, new] = [before.of(i), now.of(i)];
+            let (mean, g) = ([0, 1].map(|axis| 0.5 * (old[axis] + new[axis])), [now.gradient[i], now.gradient[n + i]]);
             let moved = (0..3).map(|k| motion[k] * dot(self.mode(k, i), mean)).sum::<f64>();
-            [work + self.entered[i] * moved, slip - dot([now.gradient[i], now.gradient[n + i]], mean)]
+            let size = new[0].hypot(new[1]);
+            let lost = match (now.cells[i], before.cells[i]) {
+                (Cell::Stick, _) => 0.0,
+                (Cell::Apart, _) => -dot(g, mean),
+                (Cell::Slip, Cell::Stick) => size * g[0].hypot(g[1]),
+                (Cell::Slip, _) => 0.5 * (old[0].hypot(old[1]) + size) * g[0].hypot(g[1]),
+            };
+            [work + self.entered[i] * moved + dot(g, mean) + lost, slip + lost]
         })
     }
 

@@ -146,3 +146,33 @@ fn work_is_stored_or_lost_by_slip_and_by_creep() {
         }
     }
 }
+
+/// To and fro at once: what slips carries its bound while it does, however far it goes. Without ν every step on the way
+/// slips in one direction.
+#[test]
+fn losses_at_once_do_not_depend_on_steps_in_space() {
+    for (nu, most) in [(0.0, 1e-8), (0.3, 2e-3)] {
+        let works = [1, 30].map(|parts: u32| {
+            let scene = ViscoelasticContact::builder(Grid::square(24, 1.0).unwrap()).settings(tight());
+            let scene = scene.geometry(&Sphere::new(1.0).unwrap()).material(pair(&relaxation(0), nu));
+            let (mut contact, mut from) = (FrictionContact::new(scene, Coulomb::new(0.5).unwrap()).unwrap(), 0.0);
+            let (force, mut works) = (0.05, Vec::new());
+            holds(contact.step(0.0, Load::force(force), ShearLoad::force([0.0; 2])).unwrap());
+            for to in [0.8, -0.5, 0.6].map(|part| 0.5 * force * part) {
+                for k in 1..=parts {
+                    let along = from + (to - from) * f64::from(k) / f64::from(parts);
+                    holds(contact.step(0.0, Load::force(force), ShearLoad::force([along, 0.0])).unwrap());
+                }
+                from = to;
+                let LateralWork { work, slip, creep, .. } = contact.lateral_work();
+                assert!(creep.abs() < 1e-9 * work, "{creep} of {work} in no time");
+                works.push([work, slip]);
+            }
+            works
+        });
+        for (one, many) in works[0].iter().flatten().zip(works[1].iter().flatten()) {
+            println!("{nu}: {one:.6e} {many:.6e} {:.1e}", one / many - 1.0);
+            assert!((one / many - 1.0).abs() < most);
+        }
+    }
+}
