@@ -74,8 +74,8 @@ impl Descent<'_> {
         Gradient { multiplier, greatest: most / law.traction(0.0), attraction, at_wall }
     }
 
-    /// Writes the next direction d, conjugate to the last one, with y·r `before`, where this is not 0, and M d/c; returns
-    /// y·r of the steepest one, y = K r.
+    /// Writes the next direction d, conjugate to the last one, with y·r `before`, where this is not 0, and M d/c.
+    /// Returns y·r of the steepest one, y = K r.
     pub(super) fn turn(&mut self, before: f64) -> f64 {
         let steepest = self.precondition(before);
         let InGap { direction, image, .. } = &mut self.own.in_gap;
