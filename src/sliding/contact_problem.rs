@@ -12,7 +12,7 @@ use super::gmres::{gmres, norm};
 use super::operator::MovingBodies;
 use crate::Grid;
 use crate::parallel::Rows;
-use crate::solver::{Freedom, Gram, ModeCoefficients, Modes, RigidMotion, dot};
+use crate::solver::{Freedom, Gram, ModeCoefficients, Modes, RestingPosition, RigidMotion, dot};
 
 /// Sets of cells in contact that are tried.
 const MOST_SETS: usize = 60;
@@ -170,6 +170,20 @@ impl SlidingProblem<'_> {
         self.cancelled.is_some_and(|flag| flag.load(Ordering::Relaxed))
     }
 
+    /// Where the body rests when it is lowered and may tilt as its load leaves it free: the cells, one of an upright
+    /// body, two or three of one that tilts; the height of the load point, below 0 where bodies of prescribed approach
+    /// overlap however they tilt; and the motion to it, without the approach.
+    fn support(&self) -> (Vec<usize>, f64, RigidMotion) {
+        let rows = Rows::all(self.grid.cells());
+        let modes = Modes::new(self.grid, &rows, Freedom { translation: true, ..self.free });
+        let cells = (0..self.gap.len()).filter(|&k| self.gap[k].is_finite());
+        let RestingPosition { motion, supports } = RestingPosition::new(&rows, &modes, self.gap, cells);
+        let pressed = supports.into_iter().flatten().filter(|(_, share)| *share > ROUNDING);
+        let (height, lowered) = (motion.0[0], modes.physical(motion));
+        let tilt = RigidMotion { approach: lowered.approach - height, tilt: lowered.tilt };
+        (pressed.map(|(k, _)| k).collect(), height, tilt)
+    }
+
     /// The state, from the `guess` of a pressure, where it is positive somewhere.
     ///
     /// A primal–dual active set: on each set of cells the pressure follows from a linear equation, which GMRES solves
@@ -188,14 +202,14 @@ impl SlidingProblem<'_> {
         while found.sets < MOST_SETS && !self.is_cancelled() {
             found.sets += 1;
             if !pressed.contains(&true) {
-                let support = self.support();
-                if !free.translation && support.height >= 0.0 {
+                let (support, height, tilt) = self.support();
+                if !free.translation && height >= 0.0 {
                     // upright if nothing touches then
                     let upright = gap.iter().all(|&h| h >= 0.0);
-                    let motion = if upright { RigidMotion::default() } else { support.tilt };
+                    let motion = if upright { RigidMotion::default() } else { tilt };
                     return FoundMotion { sets: found.sets, motion, ..FoundMotion::apart(cells) };
                 }
-                support.cells.iter().for_each(|&k| pressed[k] = true);
+                support.iter().for_each(|&k| pressed[k] = true);
             }
             let (balance, mut p) = self.balance(&mut pressed, &found.pressure);
             found.displacement = bodies.displacement(&balance.field(&p, cells));
@@ -247,7 +261,7 @@ impl SlidingProblem<'_> {
         if !self.free.tilts() || balance.holds(&p, self.free.total, self.tolerance) {
             return (balance, p);
         }
-        self.support().cells.iter().for_each(|&k| pressed[k] = true);
+        self.support().0.iter().for_each(|&k| pressed[k] = true);
         on(pressed)
     }
 
@@ -322,7 +336,7 @@ impl SlidingProblem<'_> {
     /// on its support.
     fn lowest(&self) -> Vec<bool> {
         let n2 = self.grid.cells()[1];
-        let tilt = if self.free.tilts() { self.support().tilt } else { RigidMotion::default() };
+        let tilt = if self.free.tilts() { self.support().2 } else { RigidMotion::default() };
         let leans =
             |(k, h): (usize, &f64)| if self.free.tilts() { h - tilt.at(self.grid.center(k / n2, k % n2)) } else { *h };
         let gap: Vec<f64> = self.gap.iter().enumerate().map(leans).collect();

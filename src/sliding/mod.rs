@@ -20,7 +20,6 @@ mod layer_on_base;
 mod operator;
 mod report;
 mod search;
-mod support;
 mod sweep;
 
 pub use crate::error::SlidingError;

@@ -149,26 +149,11 @@ impl MovingBodies {
         MovingBodies { response: padded_response, inverse, loss, transforms: 0 }
     }
 
-    /// Bodies with this part of the skew-symmetric response; without any the pressure moves both ways at once.
-    pub(super) fn with_skew(&self, part: f64) -> MovingBodies {
+    /// Bodies of the symmetric part of the response, over which the pressure moves both ways at once.
+    pub(super) fn symmetric(&self) -> MovingBodies {
         let mut bodies = MovingBodies { transforms: 0, ..self.clone() };
-        bodies.response.factors.iter_mut().for_each(|factor| factor.im *= part);
+        bodies.response.factors.iter_mut().for_each(|factor| factor.im = 0.0);
         bodies
-    }
-
-    /// Bodies on which each cell has a spring that is compressed `by` \[m/Pa\] in addition.
-    pub(super) fn softened(&self, by: f64) -> MovingBodies {
-        let mut bodies = MovingBodies { transforms: 0, ..self.clone() };
-        bodies.response.factors.iter_mut().for_each(|factor| *factor += by);
-        let inverse = |factor: &Complex64| if *factor == Complex64::ZERO { *factor } else { factor.inv() };
-        bodies.inverse.factors.iter_mut().for_each(|factor| *factor = (inverse(factor) + by).inv());
-        bodies
-    }
-
-    /// The least compliance of any wave but those of none \[m/Pa\].
-    pub(super) fn least_compliance(&self) -> f64 {
-        let all = self.response.factors.iter().map(|factor| factor.norm());
-        all.filter(|own| *own > 0.0).fold(f64::INFINITY, f64::min)
     }
 
     /// |p|² of each wave of a pressure, together with the conjugate one, over the number of waves.

@@ -10,17 +10,10 @@ use crate::solver::Freedom;
 const COARSEST: usize = 128;
 /// Residual allowed there.
 const ROUGHLY: f64 = 1e-3;
-/// Steps in the logarithm of the compliance of springs: the first, and the least before the search ends.
-const FIRST_STEP: f64 = 1.0;
-const LEAST_STEP: f64 = 1e-3;
-/// Springs of this part of the least compliance of any wave change nothing.
-const NEGLIGIBLE: f64 = 1e-3;
 
 impl SlidingProblem<'_> {
     /// The state, from the state of a coarser mesh, else from the pressure `before`, else from the state of the
-    /// symmetric part of the response: in slow motion a set would grow by one row of cells at a time. Where sets come
-    /// back, springs on the cells, which press independently of each other, lead to it: each set that stands changes
-    /// little under somewhat stiffer springs.
+    /// symmetric part of the response: in slow motion a set would grow by one row of cells at a time.
     pub(super) fn search(&self, bodies: &mut MovingBodies, before: &[f64]) -> FoundMotion {
         let coarse = self.on_coarser(bodies, before);
         let first = coarse.as_deref().unwrap_or(before);
@@ -33,43 +26,11 @@ impl SlidingProblem<'_> {
             sets += found.sets;
         }
         // not from the state before: a start that fails is left
-        let nowhere = vec![0.0; before.len()];
-        let mut solve = |bodies: &mut MovingBodies, other: Option<MovingBodies>, from: &[f64]| {
-            let found = match other {
-                Some(mut other) => {
-                    let found = self.solve(&mut other, from);
-                    bodies.transforms += other.transforms;
-                    found
-                }
-                None => self.solve(bodies, from),
-            };
-            sets += found.sets;
-            FoundMotion { sets, ..found }
-        };
-        let symmetric = bodies.with_skew(0.0);
-        let start = solve(bodies, Some(symmetric), &nowhere);
-        let found = solve(bodies, None, &start.pressure);
-        if found.converged || self.is_cancelled() {
-            return found;
-        }
-        let (mut spring, mut step, mut last) = (bodies.greatest_compliance(), FIRST_STEP, nowhere);
-        let least = NEGLIGIBLE * bodies.least_compliance();
-        loop {
-            let softer = (spring > least).then(|| bodies.softened(spring));
-            let is_last = softer.is_none();
-            let found = solve(bodies, softer, &last);
-            if is_last && found.converged || step < LEAST_STEP || self.is_cancelled() {
-                return FoundMotion { converged: is_last && found.converged, ..found };
-            }
-            if found.converged {
-                (last, step) = (found.pressure, 2.0 * step);
-            } else {
-                // back, and on by less
-                spring *= step.exp();
-                step *= 0.25;
-            }
-            spring *= (-step).exp();
-        }
+        let mut symmetric = bodies.symmetric();
+        let start = self.solve(&mut symmetric, &vec![0.0; before.len()]);
+        bodies.transforms += symmetric.transforms;
+        let found = self.solve(bodies, &start.pressure);
+        FoundMotion { sets: sets + start.sets + found.sets, ..found }
     }
 
     /// The pressure on a coarser mesh, spread over the cells of this grid. Its transforms count by their cells.

@@ -57,7 +57,8 @@ fn balance_with_supports(problem: &Problem<'_>, body: usize, set: &ContactSet, s
     }
     let freedom = problem.bodies[body];
     if freedom.translation {
-        let resting = RestingPosition::new(problem, &problem.modes(body), set, body);
+        let cells = set.cells(problem, body);
+        let resting = RestingPosition::new(problem.rows(), &problem.modes(body), problem.gap, cells);
         for (k, share) in resting.supports.into_iter().flatten() {
             solution.pressure[k] += share * freedom.total;
         }
@@ -77,7 +78,7 @@ fn fill_hertz(problem: &Problem<'_>, body: usize, set: &ContactSet, solution: &m
     cells().for_each(|k| solution.pressure[k] = 0.0);
     // a body that tilts under a force starts from its resting position
     let motion = if modes.freedom.tilts() && modes.freedom.translation {
-        RestingPosition::new(problem, &modes, set, body).motion
+        RestingPosition::new(rows, &modes, problem.gap, cells()).motion
     } else {
         ModeCoefficients::default()
     };

@@ -21,6 +21,7 @@ pub(crate) use bands::Bands;
 pub(crate) use extension::{Extension, ExtensionKind, HaloExchange, HaloRows};
 pub(crate) use outcome::{Outcome, PENETRATION_SLACK};
 pub(crate) use problem::{Counts, Problem, Solution, Solve, Stop};
+pub(crate) use resting_position::RestingPosition;
 pub(crate) use rigid_motion::{Freedom, Gram, ModeCoefficients, Modes, RigidMotion, dot};
 #[cfg(feature = "observe")]
 pub(crate) use stiffness::{FLAT_PUNCH_TOLERANCE, flat_punch};
@@ -32,7 +33,6 @@ use extension::Attenuation;
 use outcome::ResidualSums;
 use passes::{Passes, Search, add};
 use preconditioner::Preconditioner;
-use resting_position::RestingPosition;
 use rigid_motion::Line;
 use row_segments::{Cut, PIECE_CELLS, Piece, RowSegments};
 use trace::Trace;

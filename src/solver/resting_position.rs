@@ -1,7 +1,8 @@
 //! The position in which a rigid body rests on the undeformed surface.
 
-use super::{ContactSet, ModeCoefficients, Modes, Problem};
+use super::{ModeCoefficients, Modes};
 use crate::linalg;
+use crate::parallel::Rows;
 
 /// Number of pivots after which the search ends: its result is a guess, and any motion serves as a guess.
 const MAX_PIVOTS: usize = 200;
@@ -27,15 +28,13 @@ impl RestingPosition {
     ///
     /// whose dual is the motion. Solved by the revised simplex method on bases of three columns, begun from artificial
     /// columns that cost more than any cell. The column of a motion that is not free costs nothing, and never leaves.
-    pub(crate) fn new(problem: &Problem<'_>, modes: &Modes<'_>, set: &ContactSet, body: usize) -> RestingPosition {
-        let (rows, gap, cells) = (problem.rows(), problem.gap, || set.cells(problem, body));
-        let heights = || cells().map(|k| gap[k]);
-        let lowest = rows.least(heights().fold(f64::INFINITY, f64::min));
-        let highest = rows.greatest(heights().fold(f64::NEG_INFINITY, f64::max));
+    /// Translation is free.
+    pub(crate) fn new(rows: &Rows, modes: &Modes<'_>, gap: &[f64], cells: impl Iterator<Item = usize> + Clone) -> Self {
+        let (heights, rank) = (cells.clone().map(|k| gap[k]), rows.group().map_or(0, |group| group.rank()) as f64);
+        let lowest = rows.least(heights.clone().fold(f64::INFINITY, f64::min));
+        let highest = rows.greatest(heights.fold(f64::NEG_INFINITY, f64::max));
         let range = (highest - lowest).max(f64::MIN_POSITIVE);
-        let artificial = 1e3 * range * rows.count(cells().count()) as f64;
-
-        let rank = rows.group().map_or(0, |group| group.rank()) as f64;
+        let artificial = 1e3 * range * rows.count(cells.clone().count()) as f64;
 
         // heights are taken from the lowest point
         let unit = |m: usize| std::array::from_fn(|n| f64::from(u8::from(n == m)));
@@ -47,7 +46,7 @@ impl RestingPosition {
             let Some(next) = solve(basis.map(|(column, _)| column), basis.map(|(_, cost)| cost)) else { break };
             dual = ModeCoefficients(next);
             let cost = |k: usize| (gap[k] - lowest) - modes.displacement(dual, k);
-            let cell = cells().min_by(|&a, &b| cost(a).total_cmp(&cost(b)));
+            let cell = cells.clone().min_by(|&a, &b| cost(a).total_cmp(&cost(b)));
             let entering = cell.map_or([f64::INFINITY, 0.0, 0.0, 0.0, 0.0, rank], |k| {
                 let [a, b, c] = modes.at(k);
                 [cost(k), a, b, c, gap[k] - lowest, rank]
@@ -70,9 +69,7 @@ impl RestingPosition {
             basis[leaving] = (column, height);
             cell_of_column[leaving] = cell.filter(|_| of_rank == rank);
         }
-        if modes.freedom.translation {
-            dual.0[0] += lowest;
-        }
+        dual.0[0] += lowest;
         let shares = solve_primal(&basis, modes.load());
         let support = |m: usize| Some((cell_of_column[m]?, shares?[m].max(0.0)));
         RestingPosition { motion: dual, supports: [0, 1, 2].map(support) }

@@ -12,14 +12,12 @@ use crate::error::Result;
 use crate::load::{Load, LoadHistory};
 #[cfg(feature = "checkpoint")]
 use crate::run::doubled::SavedRun;
-use crate::run::doubled::judge::{FIRST_STEP, Judge, MAX_GROWTH, Record, SMALL, Tries, WITHOUT_ORDER};
+use crate::run::doubled::judge::{Judge, MAX_GROWTH, Record, SMALL, Tries, WITHOUT_ORDER};
 use crate::run::passage::{Passage, Span};
 use crate::run::trace::PARTS_OF_RUN;
 use crate::states::contact::StatesContact;
 use crate::states::levels::Demand;
 
-/// Bodies that relax by this factor within a step come to a corner in steps that are halved.
-const RELAXED: f64 = 2.0;
 /// Share of the tolerance that the error of a step aims at: errors of several steps add up, and over taps.
 const AIM: f64 = 0.08;
 const AIM_OF_FORCE: f64 = 0.1;
@@ -35,8 +33,6 @@ const SWEPT: f64 = 0.2;
 const SWEPT_BY_FORCE: f64 = 0.05;
 /// What hardly counts, in tolerances: the overshoot of a step that ends where bodies touch, and the merging of levels.
 const SLIGHT: f64 = 0.01;
-/// Contacts that get smaller than this part of the greatest level within a step are looked at inside its halves too.
-const SHALLOW: f64 = 0.3;
 
 /// What the loads of a run make of elastic states.
 #[derive(Debug, Clone, Default)]
@@ -109,13 +105,6 @@ impl Judge<StatesContact> for OnLevels {
         contact.levels.reset_differences();
     }
 
-    /// Bodies that part after the corner leave the levels that were met last, and relax most, first.
-    fn stop(record: &Record<OnLevels>, contact: &StatesContact, stop: f64, corner: f64) -> f64 {
-        let now = contact.time();
-        let is_far = corner - now > FIRST_STEP * (corner - record.corner);
-        if is_far && contact.levels.relaxed() > RELAXED { stop.min(0.5 * (now + corner)) } else { stop }
-    }
-
     /// Imprints need the short steps that come of rejections where nothing yields.
     fn longest_growth(contact: &StatesContact, load: Load) -> f64 {
         let yields = contact.levels.has_dashpot() || !matches!(load, Load::Approach { .. });
@@ -159,7 +148,6 @@ impl Judge<StatesContact> for OnLevels {
         Span { now, end }: Span,
         report: &StepReport,
     ) -> Result<f64> {
-        let to = |contact: &mut StatesContact, time: f64| OnLevels::take(contact, time, load_at(history, time)?);
         let (half, last) = (0.5 * (end - now), load_at(history, end)?);
         let cuts = [middle.level(), halves.level()];
         let mut of_surface = whole.levels.distance(
@@ -223,22 +211,6 @@ impl Judge<StatesContact> for OnLevels {
             let time = time.min(end - record.corner);
             let steps = (time / (end - now)).min(f64::from(PARTS_OF_RUN));
             see([AIM * halves.levels.lasting(&halves.states, demand, time / half) * steps * off, 0.0], greatest);
-        }
-        let levels = [contact.level(), cuts[0], cuts[1]];
-        let deepest = levels.into_iter().fold(0.0, f64::max);
-        let presses = last.is_force() && OnLevels::size(contact, load_at(history, now + half)?)? > 0.0;
-        if levels.iter().any(|level| *level < SHALLOW * deepest) || deepest == 0.0 && presses {
-            for start in [contact, &*middle] {
-                let mut quarter = |ends: &[f64]| -> Result<[f64; 2]> {
-                    whole.copy_from(start);
-                    for end in ends {
-                        to(whole, start.time() + end * half)?;
-                    }
-                    Ok(results(whole))
-                };
-                let (one, two) = (quarter(&[0.5])?, quarter(&[0.25, 0.5])?);
-                see([0, 1].map(|k| one[k] - two[k]), scales);
-            }
         }
         let parts = report.force == 0.0 && contact.level() > 0.0;
         Ok(if record.next == 0.0 || record.touches || parts { WITHOUT_ORDER } else { OF_HALVES } * worst)

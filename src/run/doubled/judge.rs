@@ -14,7 +14,7 @@ use crate::run::passage::{Passage, Span};
 use crate::run::trace::{bends, looks};
 
 /// First step after a jump or a corner, over the time to the next one.
-pub(crate) const FIRST_STEP: f64 = 1e-4;
+pub(in crate::run) const FIRST_STEP: f64 = 1e-4;
 /// Limit of the ratio of a step to the one before.
 pub(crate) const MAX_GROWTH: f64 = 4.0;
 /// Where there is no order, as in a first step and where bodies touch or part, halves may be no better than the whole.
@@ -58,12 +58,6 @@ pub(crate) trait Judge<C: Contact>: Default + Clone + Debug + Send + Sync + 'sta
 
     /// Starts differences of steps anew.
     fn turn(_: &mut C) {}
-
-    /// The time at which a step that is not the first one after a corner has to end, at the `stop` of the run at the
-    /// latest.
-    fn stop(_: &Record<Self>, _: &C, stop: f64, _corner: f64) -> f64 {
-        stop
-    }
 
     /// The most that a step towards this load may be longer than the one before.
     fn longest_growth(_: &C, _: Load) -> f64 {

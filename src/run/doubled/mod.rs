@@ -51,17 +51,6 @@ pub(crate) struct Doubled<C, J> {
     turn: Option<f64>,
 }
 
-/// The order at which the error of a step fell from the length tried before, at most the one of the rule.
-fn order(before: Option<(f64, f64)>, (length, error): (f64, f64), most: f64) -> f64 {
-    match before {
-        Some((longer, before)) if 0.0 < error && error < before => {
-            ((before / error).ln() / (longer / length).ln()).clamp(1.0, most)
-        }
-        Some(_) => 1.0,
-        None => most,
-    }
-}
-
 impl<C: Contact, J: Judge<C>> Doubled<C, J> {
     fn new(contact: &C, record: Record<J>) -> Doubled<C, J> {
         let (before, whole) = (contact.clone(), J::trial(contact));
@@ -89,7 +78,7 @@ impl<C: Contact, J: Judge<C>> Doubled<C, J> {
 
     /// Takes the longest step that the tolerance allows, towards the next stop of the run.
     fn step(&mut self, contact: &mut C, history: &dyn LoadHistory, course: &Course<'_>) -> Result<StepReport> {
-        let &Course { stop, corner, cancelled, .. } = course;
+        let &Course { stop, cancelled, .. } = course;
         let (now, is_first, tolerance) = (contact.time(), self.record.next == 0.0, self.record.tolerance);
         let attracts = contact.attracts();
         let load_at = |time: f64| history.checked_before(time, attracts);
@@ -100,7 +89,6 @@ impl<C: Contact, J: Judge<C>> Doubled<C, J> {
         if is_first {
             self.record.corner = now;
         }
-        let stop = if is_first { stop } else { J::stop(&self.record, contact, stop, corner) };
         // times near 0 are resolved more finely; a jump may come so late that the creep after it is faster than times
         // are resolved
         let shortest = (SHORTEST * now).max(SHORTEST * SHORTEST * stop);
@@ -108,7 +96,6 @@ impl<C: Contact, J: Judge<C>> Doubled<C, J> {
         let mut length = if is_first { FIRST_STEP * (stop - now) } else { self.record.next }.max(shortest);
         let longest = J::longest_growth(contact, load_at(stop)?);
         let first = J::size(contact, history.checked_at(now, attracts)?)?;
-        let mut last: Option<(f64, f64)> = None;
         loop {
             if is_late {
                 length = length.max(shortest);
@@ -135,9 +122,8 @@ impl<C: Contact, J: Judge<C>> Doubled<C, J> {
                 report => report?,
             };
             let error = J::error(&self.record, contact, &mut self.tries, history, span, &report)?;
-            let order = if is_first { 1.0 } else { order(last, (end - now, error), J::ORDER) };
             let (aim, most) = (J::aim(&self.record, contact, span), if error > 0.0 { longest } else { MAX_GROWTH });
-            let growth = (aim / error).powf(1.0 / order).clamp(MIN_GROWTH, most);
+            let growth = (aim / error).powf(1.0 / J::ORDER).clamp(MIN_GROWTH, most);
             if error <= ALLOWED * aim || is_late && length <= shortest {
                 self.record.next = match event {
                     Some(_) => growth.clamp(0.5, 1.0) * length,
@@ -151,7 +137,6 @@ impl<C: Contact, J: Judge<C>> Doubled<C, J> {
                 return Ok(StepReport { dt: end - now, time_error: Some(error), ..report });
             }
             self.record.rejected += 1;
-            last = Some((end - now, error));
             length = growth.min(0.5) * (end - now);
         }
     }

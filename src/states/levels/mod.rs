@@ -13,8 +13,6 @@ pub(super) use crate::states::levels::shear::Shear;
 /// Rounding of a displacement between 0 and 1, and of levels that are one.
 const ROUNDING: f64 = 1e-9;
 const SAME_LEVEL: f64 = 1e-15;
-/// The part of a step after which the response of a body counts as that at once.
-const AT_ONCE: f64 = 1e-3;
 /// Room for so many groups is made at once.
 const GROUPS: usize = 256;
 
@@ -125,15 +123,6 @@ impl Levels {
             None => other.shear.is_none(),
         };
         self.history.fits(&other.history, self.groups.len()) && is_finite && tops().is_sorted() && is_sheared
-    }
-
-    /// How many times stiffer the body is at once than over the step predicted last; 1 without elastic response,
-    /// where no levels lead.
-    pub(super) fn relaxed(&self) -> f64 {
-        if self.has_dashpot() {
-            return 1.0;
-        }
-        self.history.stiffness_over(AT_ONCE) / self.history.stiffness_over(1.0)
     }
 
     /// Whether the body has no elastic response.

@@ -51,8 +51,6 @@ const NEAR_FOLD: f64 = 0.25;
 const LOOKS: usize = 4;
 /// A state whose energy bends down by more than this is none.
 const UNSTABLE: f64 = -1e-5;
-/// q is computed afresh after so many iterations.
-const FRESH: usize = 50;
 /// Bodies without contact whose attraction carries this part of the load, or less, fly apart.
 const CARRIED: f64 = 0.5;
 
@@ -89,7 +87,8 @@ pub(super) struct Descent<'a> {
 struct Trail {
     iteration: usize,
     energy: Energy,
-    search: NextDirection,
+    /// y·r of the last direction, to which the next one is conjugate; 0 where it is to none.
+    last: f64,
     /// Curvatures along the last directions, and the least along any.
     recent: [f64; REMEMBERED],
     least: f64,
@@ -97,24 +96,6 @@ struct Trail {
     softest: Option<f64>,
     looks: usize,
     front: Front,
-}
-
-/// How the next direction follows from the gradient.
-#[derive(Clone, Copy)]
-pub(super) enum NextDirection {
-    /// Preconditioned and conjugate to the last one, of which y·r was this.
-    Conjugate(f64),
-    /// Preconditioned.
-    Steepest,
-    /// The gradient itself, which leads down where the wall turns the preconditioned direction uphill.
-    Gradient,
-}
-
-impl NextDirection {
-    /// Without what the last direction has left.
-    fn anew(self) -> NextDirection {
-        if let NextDirection::Conjugate(_) = self { NextDirection::Steepest } else { self }
-    }
 }
 
 /// A step along the direction, and the curvature of E there over the one of its convex part.
@@ -165,19 +146,17 @@ impl Descent<'_> {
             let (along, steepest) = match point {
                 Place::Saddle(along) => (along, None),
                 _ => {
-                    let steepest = self.turn(trail.search);
+                    let steepest = self.turn(trail.last);
                     (self.length(gradient), Some(steepest))
                 }
             };
             trail.note(along.curvature);
-            let falls = self.go(along, &mut trail, if steepest.is_none() { 2 } else { 1 });
-            trail.search = match (falls, steepest, trail.search) {
-                (true, Some(steepest), _) => NextDirection::Conjugate(steepest),
-                (true, None, _) | (false, Some(_), NextDirection::Conjugate(_)) => NextDirection::Steepest,
-                (false, Some(_), NextDirection::Steepest) => NextDirection::Gradient,
-                (false, _, NextDirection::Gradient) => break,
-                (false, None, _) => {
-                    // on neither side: a state, or a mix of directions at a corner of the law
+            trail.last = match (self.go(along, &mut trail), steepest) {
+                (true, steepest) => steepest.unwrap_or(0.0),
+                (false, Some(_)) if trail.last > 0.0 => 0.0,
+                (false, Some(_)) => break,
+                (false, None) => {
+                    // a state, or a mix of directions at a corner of the law
                     trail.recent[iteration % REMEMBERED] = 1.0;
                     continue;
                 }
@@ -197,7 +176,7 @@ impl Descent<'_> {
         Trail {
             iteration: 0,
             energy: self.energy(),
-            search: NextDirection::Steepest,
+            last: 0.0,
             recent: [1.0; REMEMBERED],
             least: 1.0,
             softest: self.own.softest,
@@ -212,18 +191,18 @@ impl Descent<'_> {
         let soft = if trail.iteration < LEAST_MEASURED { self.own.softness } else { recent };
         let soft = soft.min(trail.softest.unwrap_or(1.0));
         let share = if trail.iteration == 0 { SMOOTH } else { 1.0 };
-        if gradient.greatest > share * self.own.exactness * self.problem.tolerance(soft) {
+        if gradient.greatest > share * self.problem.tolerance(soft) {
             return Place::Slope;
         }
         let stiffness = trail.softest.unwrap_or_else(|| self.least_stiffness());
         let is_suspect = match trail.softest {
-            Some(_) => stiffness < VERY_SOFT && self.ends(*gradient, soft, trail.softest),
+            Some(_) => stiffness < VERY_SOFT && self.ends(*gradient, soft),
             None => (trail.least < SUSPECT || trail.iteration < LEAST_MEASURED) && stiffness < NEAR_FOLD,
         };
         if is_suspect && trail.looks < LOOKS {
             let curvature = self.soften(trail.looks);
             trail.looks += 1;
-            (*gradient, trail.energy, trail.search) = (self.gradient(), self.energy(), trail.search.anew());
+            (*gradient, trail.energy, trail.last) = (self.gradient(), self.energy(), 0.0);
             if curvature < UNSTABLE {
                 trail.softest = None;
                 return Place::Saddle(Along { length: self.way_out(*gradient), curvature });
@@ -231,7 +210,7 @@ impl Descent<'_> {
             trail.softest = Some(curvature);
         }
         let soft = soft.min(trail.softest.unwrap_or(1.0));
-        if !self.ends(*gradient, soft, trail.softest) {
+        if !self.ends(*gradient, soft) {
             return Place::Slope;
         }
         self.own.softest = trail.softest;
@@ -261,41 +240,35 @@ impl Descent<'_> {
         Ok(())
     }
 
-    /// Goes along the direction as far as E falls, or on so many of its `sides`; returns whether E falls.
-    fn go(&mut self, along: Along, trail: &mut Trail, sides: usize) -> bool {
-        for side in 0..if along.length > 0.0 { sides } else { 0 } {
-            if side > 0 {
-                // beside a corner of the law E may fall on the other side
-                self.own.in_gap.reverse();
+    /// Goes along the direction as far as E falls; returns whether it does.
+    fn go(&mut self, along: Along, trail: &mut Trail) -> bool {
+        let mut length = along.length;
+        for _ in 0..if length > 0.0 { SHORTENINGS } else { 0 } {
+            self.go_along(length);
+            let tried = self.swap();
+            let rise = (tried.value - trail.energy.value) / trail.energy.scale;
+            if rise <= ROUNDING {
+                self.own.report.rise = self.own.report.rise.max(rise - ROUNDING);
+                trail.energy = tried;
+                return true;
             }
-            let mut length = along.length;
-            for _ in 0..SHORTENINGS {
-                self.go_along(length, trail.iteration % FRESH == FRESH - 1);
-                let tried = self.swap();
-                let rise = (tried.value - trail.energy.value) / trail.energy.scale;
-                if rise <= ROUNDING {
-                    self.own.report.rise = self.own.report.rise.max(rise - ROUNDING);
-                    trail.energy = tried;
-                    return true;
-                }
-                self.own.report.rejected += 1;
-                self.swap();
-                length *= SHORTER;
-            }
+            self.own.report.rejected += 1;
+            self.swap();
+            length *= SHORTER;
         }
         false
     }
 
-    /// Writes x + `length` d, kept to h ≥ 0, and its q to what is tried; where the wall or the mean changed it, or on
-    /// demand, q is computed afresh.
-    fn go_along(&mut self, length: f64, afresh: bool) {
+    /// Writes x + `length` d, kept to h ≥ 0, and its q to what is tried; where the wall or the mean changed it, q is
+    /// computed afresh.
+    fn go_along(&mut self, length: f64) {
         let Descent { operators, own, trial, .. } = self;
         let Solution { potential: x, attraction: q, .. } = &trial.solution;
         let InGap { direction, image, lift, traction } = &mut own.in_gap;
         for_each_band([&mut *lift], |first, [lift]| {
             lift.iter_mut().zip(first..).for_each(|(lift, k)| *lift = x[k] + length * direction[k]);
         });
-        if operators.project(&trial.gap, lift) || afresh {
+        if operators.project(&trial.gap, lift) {
             operators.tractions(lift, traction);
         } else {
             let tractions = q.iter().zip(&*image);
@@ -314,7 +287,7 @@ impl Descent<'_> {
         let falls = tried.value < trail.energy.value;
         trail.front.learn(falls);
         if falls {
-            (trail.energy, trail.search) = (tried, trail.search.anew());
+            (trail.energy, trail.last) = (tried, 0.0);
         } else {
             self.swap();
             let InGap { image, traction, .. } = &mut self.own.in_gap;

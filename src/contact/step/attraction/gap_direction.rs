@@ -1,7 +1,7 @@
 //! Gradient, direction and length of an iteration in the gap.
 
 use super::balance::Operators;
-use super::descent::{Along, Descent, Gradient, NextDirection};
+use super::descent::{Along, Descent, Gradient};
 use super::passes::InGap;
 use super::softest::{Convex, softest};
 use crate::attraction::Attraction;
@@ -20,10 +20,6 @@ const SLOPE_LEFT: f64 = 0.1;
 const TRIES: usize = 10;
 /// A direction descends by this part of the steepest one, or the search begins anew.
 const LEAST_DESCENT: f64 = 1e-3;
-/// At a curvature κ of its softest direction a state is about κ² short of a fold, in r: the descent ends where r is
-/// below this part of κ², or below the least.
-const FOLD: f64 = 0.05;
-const LEAST_FOLD: f64 = 1e-9;
 /// The maximum change of the gap at first on the way from a state that is unstable, in ranges.
 const SPAN: f64 = 0.03;
 /// Curvature is measured by a change of the gap by this part of the range.
@@ -78,17 +74,10 @@ impl Descent<'_> {
         Gradient { multiplier, greatest: most / law.traction(0.0), attraction, at_wall }
     }
 
-    /// Writes the next direction d, and M d/c; returns y·r of the steepest one, y = K r.
-    pub(super) fn turn(&mut self, search: NextDirection) -> f64 {
-        let steepest = match search {
-            NextDirection::Conjugate(before) => self.precondition(before),
-            NextDirection::Steepest => self.precondition(0.0),
-            NextDirection::Gradient => {
-                let opposite = self.own.in_gap.direction.iter_mut().zip(&self.trial.solution.pressure);
-                opposite.for_each(|(direction, r)| *direction = -r);
-                0.0
-            }
-        };
+    /// Writes the next direction d, conjugate to the last one, with y·r `before`, where this is not 0, and M d/c.
+    /// Returns y·r of the steepest one, y = K r.
+    pub(super) fn turn(&mut self, before: f64) -> f64 {
+        let steepest = self.precondition(before);
         let InGap { direction, image, .. } = &mut self.own.in_gap;
         self.operators.stiffen(direction, image);
         steepest
@@ -183,11 +172,9 @@ impl Descent<'_> {
         attracted
     }
 
-    /// Whether r is so small that the descent may end, at this curvature, and beside the fold that the softest
-    /// direction may show.
-    pub(super) fn ends(&self, gradient: Gradient, soft: f64, softest: Option<f64>) -> bool {
-        let fold = softest.map_or(1.0, |soft| (FOLD * soft * soft).max(LEAST_FOLD));
-        gradient.greatest <= fold.min(self.own.exactness * self.problem.tolerance(soft))
+    /// Whether r is so small that the descent may end, at this curvature.
+    pub(super) fn ends(&self, gradient: Gradient, soft: f64) -> bool {
+        gradient.greatest <= self.problem.tolerance(soft)
     }
 
     /// What the least curvature of the state before the step was found to be, less the maximum rise of −s′ since,

@@ -27,12 +27,6 @@ const RELAXATION: [f64; 2] = [0.1, 3.0];
 /// the grid along an axis.
 const LEAST_ACTION: f64 = 0.1;
 const MAX_EXTENT: f64 = 0.8;
-/// Where a round leaves more than this of the change of the round before, and the change is no more than so many times
-/// what may be left, it is one of the error of the descents along a soft direction: they go on, each time more exact by
-/// this factor.
-const LEAST_GAIN: f64 = 0.1;
-const NEARLY: f64 = 10.0;
-const MORE_EXACT: f64 = 0.1;
 
 impl AttractedStep<'_> {
     /// Finishes z, s and K (z − s) of the trial by descents in the gap.
@@ -45,7 +39,7 @@ impl AttractedStep<'_> {
     ) -> Result<()> {
         let Some(mut inverse) = own.inverse.take() else { return Err(self.not_converged(own, f64::INFINITY)) };
         self.begin_in_gap(window, trial);
-        (own.softness, own.exactness, own.softest) = (0.0, 1.0, None);
+        (own.softness, own.softest) = (0.0, None);
         let (near, balance) = (own.near.is_some(), self.balance(window, &inverse));
         let operators = Operators { balance, inverse: &mut inverse, window, counts };
         let mut descent = Descent { problem: self, operators, own: &mut *own, trial };
@@ -101,13 +95,9 @@ impl Descent<'_> {
             self.with_near_field(Descent::run)?;
             let ([change, most], next) = self.correct(relaxation);
             let most = c * most * problem.scene.ground.softening / problem.law.traction(0.0);
-            let allowed = MOST_CHANGE * problem.tolerance(self.own.softness);
-            if most <= allowed {
+            if most <= MOST_CHANGE * problem.tolerance(self.own.softness) {
                 self.join();
                 return Ok(());
-            }
-            if change > LEAST_GAIN * last && most <= NEARLY * allowed && self.own.exactness > MORE_EXACT * MORE_EXACT {
-                self.own.exactness *= MORE_EXACT;
             }
             (last, relaxation) = (change, Some(next));
             self.own.relax(next);

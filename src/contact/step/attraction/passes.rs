@@ -20,8 +20,6 @@ pub(crate) struct Attracted {
     /// The least curvature of the energy over the curvature of its convex part, among the directions of the last
     /// descent.
     pub(super) softness: f64,
-    /// The maximum residual of a descent, over what its softness asks for.
-    pub(super) exactness: f64,
     /// Whether a state is looked at for a direction along which the energy bends down, and the least curvature that
     /// this step has found so.
     pub(super) looks: bool,
@@ -123,7 +121,6 @@ impl Attracted {
             far: field(),
             change: field(),
             softness: 0.0,
-            exactness: 1.0,
             looks: true,
             softest: None,
             report: PassReport::default(),
