@@ -32,7 +32,7 @@ pub fn settings(base: Settings, given: &Dict<'_>) -> PyResult<Settings> {
     given.iter().try_fold(base, |settings, (name, value)| {
         let name: String = name.extract()?;
         let changed = setting(settings, &name, &value).map_err(|error| noted(error, &name, &value))?;
-        changed.ok_or_else(|| unexpected("ElasticContact", &name, OPTIONS))
+        changed.ok_or_else(|| unexpected("the contact problem", &name, OPTIONS))
     })
 }
 
@@ -109,7 +109,7 @@ fn with_option((builder, changed): (Builder, &mut Settings), name: &str, value: 
                 Err(_) => builder.times_of(&*history(&first)?, last),
             }
         }
-        _ => return Err(unexpected("ViscoelasticContact", name, OPTIONS)),
+        _ => return Err(unexpected("a contact", name, OPTIONS)),
     })
 }
 
