@@ -81,13 +81,14 @@ def plot(self, what=None, *, ax=None, **style):
     Of fields and maps `what` is drawn as a map: "pressure" by default, "gap", "displacement", "traction" or "heights". Of tables it is
     the column over the first one (of a sweep "friction" over the speed), of curves the force over time; `style` goes to `Axes.plot`.
     """
-    ax = _axes(ax)
     if hasattr(self, "pressure") or isinstance(self, native.HeightMap):
         names = ("heights",) if isinstance(self, native.HeightMap) else FIELDS
         if (what or names[0]) not in names:
             raise ValueError(f"what = {what!r} is not a field: it must be one of {', '.join(names)}")
+        ax = _axes(ax)
         _plot_field(self, ax, what or names[0])
         return ax
+    ax = _axes(ax)
     columns = _columns(self)
     if isinstance(self, native.SlidingTable):
         columns = {"speed": np.hypot(columns["velocity1"], columns["velocity2"])} | columns
