@@ -62,6 +62,9 @@ macro_rules! both {
             ) -> PyResult<Run> {
                 let (stop_at, sample_at) = (times("stop_at", stop_at)?, times("sample_at", sample_at)?);
                 let (stepping, autosave) = (stepping(dt, tolerance)?, saved_every(autosave)?);
+                if fields_to.is_some() && sample_at.is_none() {
+                    return Err(PyTypeError::new_err("fields_to is of the samples at the times sample_at: give both"));
+                }
                 let (sampled, loads) = (sample_at.is_some(), histories(load)?);
                 let histories = loads.iter().map(|load| Arc::clone(&load.get().history)).collect();
                 let options = Options { histories, stepping, until, stop_at, sample_at, fields_to, autosave };

@@ -17,7 +17,7 @@ use crate::prelude::*;
 ///     The contact modulus E* [Pa], E/(1 − ν²) of an elastic body under a rigid one.
 /// kernel : InfluenceKernel, optional
 ///     The body, if it is not a half-space.
-/// tolerance, max_iterations, solver, edge, symmetry, window : optional
+/// tolerance, max_iterations, edge, symmetry, window : optional
 ///     As of `ViscoelasticContact`.
 ///
 /// >>> contact = ElasticContact(Grid(64, 3e-3), Shape.sphere(10e-3), 4e6)
@@ -89,12 +89,6 @@ impl ElasticContact {
     #[getter]
     fn modulus(slf: Shared<'_, Self>) -> f64 {
         slf.contact.modulus()
-    }
-
-    /// The fields as they are, to keep.
-    #[getter]
-    fn fields(slf: Shared<'_, Self>) -> Fields {
-        Fields(slf.contact.fields().keep())
     }
 
     fn __repr__(slf: Shared<'_, Self>) -> PyResult<String> {

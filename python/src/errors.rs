@@ -118,7 +118,7 @@ fn with_causes(error: &dyn StdError) -> String {
 }
 
 /// What messages of the crates name, and what it is called here.
-const NAMES: [(&str, &str); 16] = [
+const NAMES: [(&str, &str); 39] = [
     ("share of the glassy modulus", "share of the glassy modulus (moduli are for Rheology.generalized_maxwell)"),
     (
         "name the times to fit one over, with Builder::times (first and last) or Builder::times_of (a load history and its end), or fit one with Rheology::series or Material::fitted",
@@ -127,10 +127,9 @@ const NAMES: [(&str, &str); 16] = [
     ("Builder::times", "times="),
     ("Builder::counter_motion", "counter_motion=\"slides\" or \"rolls\""),
     ("CreepSeries::extrapolated", "extrapolated=True of Measurements.fit"),
-    (
-        "choose the other Frame with Settings::with_frame",
-        "give frame=\"indenter\" or frame=\"bodies\", whichever it is not",
-    ),
+    ("choose the other Frame with Settings::with_frame", "take the other frame=, \"indenter\" or \"bodies\""),
+    ("Frame::Indenter", "frame=\"indenter\""),
+    ("Frame::Bodies", "frame=\"bodies\""),
     ("set Settings::edge to Edge::Allow", "give edge=\"allow\""),
     ("sweep further (states::Reach)", "sweep to a greater load, approach or level, or with the softest material"),
     ("call Sweep::keep_pressures before the sweep", "give keep_pressures=True to the sweep"),
@@ -140,6 +139,33 @@ const NAMES: [(&str, &str); 16] = [
     ("a greater Settings::tolerance", "a greater tolerance="),
     ("call with_friction first", "give friction= or estimated_friction="),
     ("with_estimated_friction takes", "estimated_friction= takes"),
+    (
+        "a contact needs material: call Builder::material before build",
+        "the stress needs Poisson's ratio, which this contact does not have: give it to SubsurfaceStress(kernel, pressure, nu)",
+    ),
+    ("a contact needs counter_body: call Builder::counter_body before build", "the contact has no counter_body="),
+    ("from ViscoelasticContact::traction_into", "of the traction"),
+    ("Material::incompressible or Material::constant_poisson", "Material(rheology, nu)"),
+    (
+        "use Measurements::fit_tension and Material::from_tension",
+        "use Measurements.fit_tension, and give the Material its nu",
+    ),
+    ("TextTable::only", "only="),
+    ("TextTable::with_heading", "headings="),
+    ("choose by TextTable::section", "read each section from a file of its own"),
+    ("or with_missing_height(f64::NAN)", "or missing_height=math.nan"),
+    ("TextFormat::with_missing_height(", "missing_height=("),
+    ("TextFormat::with_", ""),
+    ("give it, as to HeightMap::from_gsf", "give unit="),
+    ("HeightMap::from_profile", "profile=True"),
+    ("HeightMap::from_xyz", "points=True"),
+    ("HeightMap::new", "HeightMap(heights, lengths)"),
+    ("Recording::spring_curve", "Recording.curve with a stiffness"),
+    ("Recording::depth_curve", "Recording.curve without a stiffness"),
+    ("use Curve::averaged", "average neighbouring samples first"),
+    ("take Noise::AutoregressiveWith", "give its coefficient as noise="),
+    ("Stepping::fixed", "dt="),
+    ("Settings::", ""),
     ("::", "."),
 ];
 

@@ -125,6 +125,18 @@ of_fields!(ViscoelasticContact);
 of_fields!(ElasticContact);
 of_fields!(Fields);
 
+/// The fields of a contact that goes on.
+macro_rules! kept {
+    ($($class:ident)*) => {$(
+        getters! {by shown $class, of:
+            /// The fields as they are, to keep.
+            fields: Fields = Fields(of.keep());
+        }
+    )*};
+}
+
+kept! {ViscoelasticContact ElasticContact}
+
 /// A field that a contact writes.
 fn field<'py>(
     py: Python<'py>,

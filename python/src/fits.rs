@@ -81,7 +81,7 @@ type State = (Vec<f64>, Vec<(f64, [f64; 2], Vec<f64>)>, bool, usize, Option<f64>
 impl Fit {
     fn __getitem__(slf: Bound<'_, Self>, name: &str) -> PyResult<Estimate> {
         let fit = &slf.get().fit;
-        let Some(of) = fit.estimate(name).or_else(|| fit.estimate(&name.replace('_', " "))).cloned() else {
+        let Some(of) = fit.estimate(&slf.get().named(name)).cloned() else {
             let names: Vec<&str> = fit.estimates().iter().map(|estimate| &*estimate.name).collect();
             return Err(PyKeyError::new_err(format!("no parameter is named {name:?}: there are {}", names.join(", "))));
         };
@@ -126,12 +126,12 @@ impl Fit {
 
     /// Covariance of two parameters on their scales (`Estimate.scale`); None without one of them.
     fn covariance(&self, one: &str, other: &str) -> Option<f64> {
-        self.fit.covariance(one, other)
+        self.fit.covariance(&self.named(one), &self.named(other))
     }
 
     /// Correlation of two parameters; None without one of them.
     fn correlation(&self, one: &str, other: &str) -> Option<f64> {
-        self.fit.correlation(one, other)
+        self.fit.correlation(&self.named(one), &self.named(other))
     }
 
     /// The contact modulus E*(t) [Pa] at times after a sudden step [s].
@@ -171,7 +171,8 @@ impl Fit {
     /// All values of a parameter for which the best fit of the others is not significantly worse.
     #[pyo3(signature = (name, confidence=0.95))]
     fn profile_interval(&self, py: Python<'_>, name: &str, confidence: f64) -> PyResult<(f64, f64)> {
-        self.watched(py, |fit| fit.profile_interval(name, confidence)).map(Into::into)
+        let name = self.named(name);
+        self.watched(py, |fit| fit.profile_interval(&name, confidence)).map(Into::into)
     }
 
     /// The decades of time that the curves determine: dicts of "times" [s], "modulus" that relaxes there [Pa], its "deviation" [Pa], and
@@ -278,6 +279,12 @@ impl Fit {
     /// Computes what Ctrl-C ends.
     fn watched<T: Send>(&self, py: Python<'_>, job: impl FnOnce(&id::Fit) -> id::Result<T> + Send) -> PyResult<T> {
         watched(py, None, |watch| job(&self.fit.clone().watched(watch)))
+    }
+
+    /// The name of a parameter, which may be that of its keyword.
+    fn named(&self, name: &str) -> String {
+        let spaced = name.replace('_', " ");
+        if self.fit.estimate(&spaced).is_some() { spaced } else { name.to_string() }
     }
 
     fn check(&self, curve: usize) -> PyResult<()> {

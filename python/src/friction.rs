@@ -7,7 +7,6 @@ use pyo3::create_exception;
 use viscocontact::friction as vf;
 
 use crate::contact::timed;
-use crate::errors::no_exception;
 use crate::loads::Tilts;
 use crate::prelude::*;
 
@@ -96,10 +95,9 @@ impl FrictionLimit {
         Ok(FrictionLimit::by(recipe, ByFunction(limit)))
     }
 
-    /// r [Pa] under a pressure [Pa].
-    fn limit(&self, pressure: f64) -> PyResult<f64> {
-        let limit = vf::FrictionLimit::limit(&self.limit, pressure);
-        no_exception().map(|()| limit)
+    /// r [Pa] under pressures [Pa].
+    fn limit<'py>(&self, pressure: &Object<'py>) -> PyResult<Object<'py>> {
+        mapped("pressure", pressure, FROM_ZERO, |pressure| vf::FrictionLimit::limit(&self.limit, pressure), never)
     }
 }
 
@@ -270,7 +268,8 @@ impl FrictionContact {
         slf.contact.sticks().into_pyarray(py).reshape(slf.contact.normal().grid().cells())
     }
 
-    /// Where the work along the surface went since the contact was made [J]: "work" = "slip" + "stored" + "creep".
+    /// Where the work along the surface went since the contact was made [J]: "work" = "slip" + "stored" + "creep". The work of a step is its
+    /// motion times the mean of the tractions at its ends: what slip takes needs short steps.
     #[getter]
     fn lateral_work<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let contact = &slf.contact;

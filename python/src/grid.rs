@@ -14,8 +14,9 @@ impl FromPyObject<'_, '_> for Count {
     type Error = PyErr;
 
     fn extract(given: Borrowed<'_, '_, PyAny>) -> PyResult<Count> {
-        let refused =
-            || PyValueError::new_err(format!("{} is not allowed: a whole number from 0 on is needed", &*given));
+        let refused = || {
+            PyValueError::new_err(format!("{} is not allowed: a whole number from 0 to 2^64 - 1 is needed", &*given))
+        };
         let is_number = given.extract::<usize>().map(Count);
         is_number.map_err(|error| if error.is_instance_of::<PyOverflowError>(given.py()) { refused() } else { error })
     }

@@ -180,7 +180,7 @@ impl HeightMap {
         HeightMap::changed(slf, "cropped", (slf.clone(), first, shape), |map| map.cropped(first, shape))
     }
 
-    /// The mirror image along the chosen axes.
+    /// The mirror image along the chosen axes, a bool for each.
     fn flipped(slf: &Bound<'_, Self>, along: [bool; 2]) -> PyResult<Py<HeightMap>> {
         HeightMap::changed(slf, "flipped", (slf.clone(), along), |map| Ok(map.flipped(along)))
     }

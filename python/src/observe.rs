@@ -74,7 +74,8 @@ macro_rules! observed {
 
             /// The stress below the surface of the creeping body, or with `in_counter_body` of the other one.
             ///
-            /// Raises NotImplementedError where it is not known: in layers, or with an elastic bulk.
+            /// Raises NotImplementedError where it is not known: in layers, or with an elastic bulk; ValueError of an `ElasticContact`, which
+            /// has no Poisson's ratio: `SubsurfaceStress` takes one.
             #[pyo3(signature = (*, in_counter_body=false))]
             fn stress(slf: Shared<'_, Self>, py: Python<'_>, in_counter_body: bool) -> PyResult<SubsurfaceStress> {
                 let contact = slf.shown()?;

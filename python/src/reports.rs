@@ -44,7 +44,7 @@ getters! {StepReport, of, py:
     tilt: (f64, f64) = of.tilt.into();
     /// Cells in contact.
     contact_cells: usize = of.contact_cells;
-    /// Estimated relative error in time of the step; None where there is no estimate.
+    /// Estimated relative error in time of the step; None where there is no estimate, as on elastic states by `step` or with `dt`.
     time_error: Option<f64> = of.time_error;
     /// The quantity of which this is the error: "approach", "force", or both.
     estimated: String = of.estimated.to_string();

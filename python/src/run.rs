@@ -115,7 +115,8 @@ impl Run {
     /// "max_pressure" [Pa] (in space), or a function of the contact that returns a float. Call it before the first step; `events` has the
     /// crossings.
     ///
-    /// A function is called with a copy of the contact, some times a step. An exception of it comes out after the step.
+    /// A quantity beyond the value has to come back first, to it or by a millionth of its maximum distance. A function is called with a
+    /// copy of the contact, some times a step. An exception of it comes out after the step.
     ///
     /// >>> contact = StatesContact(ElasticStates.sphere(10e-3), Material(Rheology.zener(1e6, 1e6, 1.0)))
     /// >>> drive = LoadHistory.sinusoid(Load.approach(-20e-6), Load.approach(20e-6), 0.2)

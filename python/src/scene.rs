@@ -31,8 +31,16 @@ fn setting(settings: Settings, name: &str, value: &Object<'_>) -> PyResult<Optio
 pub fn settings(base: Settings, given: &Dict<'_>) -> PyResult<Settings> {
     given.iter().try_fold(base, |settings, (name, value)| {
         let name: String = name.extract()?;
-        setting(settings, &name, &value)?.ok_or_else(|| unexpected("the contact problem", &name, OPTIONS))
+        let changed = setting(settings, &name, &value).map_err(|error| noted(error, &name, &value))?;
+        changed.ok_or_else(|| unexpected("the contact problem", &name, OPTIONS))
     })
+}
+
+/// An error of the value of a keyword, with its name, as errors of other arguments have it.
+fn noted(error: PyErr, name: &str, value: &Object<'_>) -> PyErr {
+    // Python 3.10 has no notes
+    let _ = error.value(value.py()).call_method1("add_note", (format!("while processing '{name}'"),));
+    error
 }
 
 /// The keywords of a contact.
@@ -72,31 +80,37 @@ pub fn builder(
         if value.is_none() {
             continue;
         }
-        if let Some(settings) = setting(changed, &name, &value)? {
-            changed = settings;
-            continue;
-        }
-        builder = match &*name {
-            "counter_body" => builder.counter_body(value.cast::<Material>()?.get().material.clone()),
-            "kernel" => builder.kernel(value.cast::<InfluenceKernel>()?.get().kernel.clone()),
-            "attraction" => builder.attraction(value.cast::<Attraction>()?.get().law.clone()),
-            "temperature" => builder.temperature(value.cast::<TemperatureHistory>()?.get().history.clone()),
-            "times" => {
-                let (first, last): (Object<'_>, f64) = value.extract()?;
-                match first.extract::<f64>() {
-                    Ok(first) if first.is_nan() || first >= last => {
-                        let text =
-                            format!("times = ({first}, {last}) is not allowed: the first must be less than the last");
-                        return Err(PyValueError::new_err(text));
-                    }
-                    Ok(first) => builder.times(first..=last),
-                    Err(_) => builder.times_of(&*history(&first)?, last),
-                }
-            }
-            _ => return Err(unexpected("a contact", &name, OPTIONS)),
-        };
+        let given = (builder, &mut changed);
+        builder = with_option(given, &name, &value).map_err(|error| noted(error, &name, &value))?;
     }
     Ok(builder.settings(changed))
+}
+
+/// A builder and its settings with what one keyword says.
+fn with_option((builder, changed): (Builder, &mut Settings), name: &str, value: &Object<'_>) -> PyResult<Builder> {
+    if let Some(settings) = setting(*changed, name, value)? {
+        *changed = settings;
+        return Ok(builder);
+    }
+    Ok(match name {
+        "counter_body" => builder.counter_body(value.cast::<Material>()?.get().material.clone()),
+        "kernel" => builder.kernel(value.cast::<InfluenceKernel>()?.get().kernel.clone()),
+        "attraction" => builder.attraction(value.cast::<Attraction>()?.get().law.clone()),
+        "temperature" => builder.temperature(value.cast::<TemperatureHistory>()?.get().history.clone()),
+        "times" => {
+            let (first, last): (Object<'_>, f64) = value.extract()?;
+            match first.extract::<f64>() {
+                Ok(first) if first.is_nan() || first >= last => {
+                    let text =
+                        format!("times = ({first}, {last}) is not allowed: the first must be less than the last");
+                    return Err(PyValueError::new_err(text));
+                }
+                Ok(first) => builder.times(first..=last),
+                Err(_) => builder.times_of(&*history(&first)?, last),
+            }
+        }
+        _ => return Err(unexpected("a contact", name, OPTIONS)),
+    })
 }
 
 /// Bytes that a contact takes, before it is built.

@@ -55,6 +55,7 @@ EVALUATED = {
     "traction": (ATTRACTION.traction, True), "energy": (ATTRACTION.energy, True),
     "radius": (GROWING.contact_radius, True), "growing": (GROWING.approach, True), "pressure": (lambda r: GROWING.pressure(r, 1.0), True),
     "temperature": (WARM.at, True), "modulus": (FIT.modulus, True), "deviation": (FIT.modulus_deviation, True),
+    "friction": (vc.FrictionLimit.tresca(0.5).limit, True),
     "height": (lambda x: vc.HeightMap(np.zeros((4, 4)), 1.0).height_at(x, 0.0), False),
 }
 
@@ -118,6 +119,7 @@ def test_a_matrix_has_one_orientation(tmp_path):
     (lambda: ball(tolerence=1e-3), TypeError, "did you mean 'tolerance'"),
     (lambda: vc.Identification("zener", robsut=True), TypeError, "did you mean 'robust'"),
     (lambda: ball(times=(10, 1)), ValueError, "times = "),
+    (lambda: ball(temperature=300.0), TypeError, "TemperatureHistory"),
     (lambda: vc.Rheology.function(3.0), TypeError, "a function is needed"),
     (lambda: vc.Identification(("prony", 0)), ValueError, "1 to 50"),
     (lambda: vc.Identification(("prony", 100)), ValueError, "1 to 50"),
@@ -136,10 +138,19 @@ def test_a_matrix_has_one_orientation(tmp_path):
     (lambda: vc.HeightMap.read("nothing.sdf"), FileNotFoundError, "nothing.sdf"),
     (lambda: ball().resume("nothing"), FileNotFoundError, "nothing"),
     (lambda: ball().picture().save("x.jpg"), ValueError, "png"),
+    (lambda: ball().plot("speed"), ValueError, "must be one of pressure"),
+    (lambda: ball().follow(F(0.1), 1.0, fields_to=1e-3), TypeError, "sample_at"),
+    (lambda: vc.FrictionLimit.coulomb(0.5).limit(-1.0), ValueError, "pressure = -1"),
+    (lambda: vc.ElasticContact(vc.Grid(16, 4e-3), BALL, 4e6).stress(), ValueError, "SubsurfaceStress"),
+    (lambda: ball().stress(in_counter_body=True), ValueError, "no counter_body="),
+    (lambda: ball(tolerance=2.0), ValueError, "^tolerance = 2"),
+    (lambda: FIT.profile_interval("contact_pont"), ValueError, "the names are"),
 ])
 def test_what_is_not_allowed_is_told_when_it_is_given(bad, error, text):
     with pytest.raises(error, match=text) as caught:
         bad()
+    if sys.version_info >= (3, 11) and text == "TemperatureHistory":
+        assert caught.value.__notes__ == ["while processing 'temperature'"]
     if isinstance(caught.value, FileNotFoundError):
         assert caught.value.errno == 2 and caught.value.filename.startswith("nothing")
 
@@ -400,6 +411,28 @@ def test_a_fit_of_a_list_keeps_what_was_of_its_curve():
         assert pickle.loads(pickle.dumps(fit)).estimates == fit.estimates
     assert len(fits[1].estimates) == len(fits[0].estimates) + 1
     assert vc.ranked(fits[:1])[0][0] is fits[0]
+
+
+def test_a_parameter_has_the_name_of_its_keyword():
+    fit = vc.Identification("zener", contact_point=True).fit(noisy())
+    assert fit["contact_point"] == fit["contact point"]
+    assert fit.correlation("contact_point", "tau") == fit.correlation("contact point", "tau") is not None
+    low, high = fit.profile_interval("contact_point")
+    assert low < fit["contact_point"].value < high
+
+
+def test_a_table_without_its_headings_is_told_by_keywords(tmp_path):
+    (tmp_path / "curve.csv").write_text("a,b\n1,2\n3,4\n")
+    with pytest.raises(OSError, match="only=, name columns by headings=, .* skipped_lines, or state delimiter"):
+        vc.Recording.from_csv(tmp_path / "curve.csv")
+
+
+def test_fields_are_kept_while_a_contact_goes_on():
+    contact = ball()
+    contact.step(0.1, F(0.1))
+    before = contact.fields
+    contact.step(0.1, F(0.2))
+    assert before.force == 0.1 and (before.pressure != contact.pressure).any()
 
 
 def test_values_are_equal_and_hashed_by_value():

@@ -11,6 +11,7 @@ UNITS = {
     "traction": "Pa", "heights": "m", "level": "m²", "stiffness": "m", "area": "m²", "velocity1": "m/s", "velocity2": "m/s",
     "temperature": "K", "lateral_force1": "N", "lateral_force2": "N", "mean_gap": "m", "dissipation": "W", "depth": "m",
 }
+FIELDS = ("pressure", "gap", "displacement", "traction")
 # metres in a unit of SurfaceTopography
 METRES = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "μm": 1e-6, "nm": 1e-9, "pm": 1e-12, "Å": 1e-10, "km": 1e3}
 
@@ -56,7 +57,7 @@ def to_xarray(self):
     import xarray
 
     is_map = isinstance(self, native.HeightMap)
-    names = ("heights",) if is_map else ("pressure", "gap", "displacement", "traction")
+    names = ("heights",) if is_map else FIELDS
     grid = self.grid if hasattr(self, "grid") else self.fields.grid
     places = [values.ravel() for values in grid.coordinates()]
     if is_map:
@@ -80,10 +81,14 @@ def plot(self, what=None, *, ax=None, **style):
     Of fields and maps `what` is drawn as a map: "pressure" by default, "gap", "displacement", "traction" or "heights". Of tables it is
     the column over the first one (of a sweep "friction" over the speed), of curves the force over time; `style` goes to `Axes.plot`.
     """
-    ax = _axes(ax)
     if hasattr(self, "pressure") or isinstance(self, native.HeightMap):
-        _plot_field(self, ax, what or ("heights" if isinstance(self, native.HeightMap) else "pressure"))
+        names = ("heights",) if isinstance(self, native.HeightMap) else FIELDS
+        if (what or names[0]) not in names:
+            raise ValueError(f"what = {what!r} is not a field: it must be one of {', '.join(names)}")
+        ax = _axes(ax)
+        _plot_field(self, ax, what or names[0])
         return ax
+    ax = _axes(ax)
     columns = _columns(self)
     if isinstance(self, native.SlidingTable):
         columns = {"speed": np.hypot(columns["velocity1"], columns["velocity2"])} | columns

@@ -82,7 +82,7 @@ bitflags! {
         /// millimetre, but not flat: sides of a map or a grid in µm that are read as metres are that long for their
         /// heights.
         ///
-        /// Or the grid is longer than 0.1 m, and they rise by less than 1e-4 of it.
+        /// Or the grid is longer than 0.1 m along a side of several cells, and they rise by less than 1e-4 of it.
         const FLAT = 1 << 13;
         /// The bodies are pressed into a layer by more than a fifth of its thickness
         /// ([`Figures::compression`](crate::contact::Figures::compression)): strains are not small, and the layer is

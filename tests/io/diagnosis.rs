@@ -137,6 +137,18 @@ fn a_plane_is_neither_steep_nor_flat() {
     assert!(!report.unwrap().warnings.intersects(Warnings::STEEP | Warnings::FLAT));
 }
 
+/// The one cell across a line contact is a unit of length, in which bodies rise by little.
+#[test]
+fn a_small_cylinder_is_not_flat() {
+    let grid = Grid::new([64, 1], [0.25e-3, 1.0]).unwrap();
+    let settings = Settings::default().with_edge(Edge::Allow);
+    for (radius, depth, is_flat) in [(0.2e-3, 1.0e-6, false), (1.0e3, 1.0e-12, true)] {
+        let cylinder = Cylinder::new(radius).unwrap();
+        let report = contact_of(&cylinder, grid.clone(), elastic(), settings).step(0.0, Load::approach(depth));
+        assert_eq!(report.unwrap().warnings.contains(Warnings::FLAT), is_flat, "{radius}");
+    }
+}
+
 /// The greatest slope in contact is the slope of the body there, whatever part of the grid is computed.
 #[test]
 fn the_slope_of_a_cone_is_reported() {

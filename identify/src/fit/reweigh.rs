@@ -9,6 +9,7 @@ use crate::identification::Identification;
 use crate::noise::{CORRELATIONS, Whitening, difference};
 use crate::problem::Problem;
 use crate::statistics::square;
+use crate::watch::Watch;
 
 /// Correlations that are tried first.
 const TRIED: usize = 40;
@@ -51,7 +52,7 @@ impl Identification {
             first = rows.end;
             let mut own = residuals[rows.clone()].to_vec();
             if self.fits_correlation() {
-                let [phi, memory] = correlation(&own, &jacobian, rows.start);
+                let [phi, memory] = correlation(&own, &jacobian, rows.start, &self.watch)?;
                 let before = part.whitening;
                 is_found &= (phi - before.phi).abs() < FOUND && memory == before.memory;
                 part.whitening = Whitening { phi, memory };
@@ -99,7 +100,7 @@ impl Identification {
 
 /// The autoregressive coefficient of the maximum restricted likelihood (H. D. Patterson & R. Thompson, Biometrika 58, 1971), and the order of the
 /// memory: the residuals are those of the problem that is linearised by the rows of the Jacobian from `first` on.
-fn correlation(residuals: &[f64], jacobian: &Mat<f64>, first: usize) -> [f64; 2] {
+fn correlation(residuals: &[f64], jacobian: &Mat<f64>, first: usize, watch: &Watch) -> Result<[f64; 2]> {
     let points = residuals.len();
     let slopes = (0..jacobian.ncols()).map(|j| (0..points).map(|k| jacobian[(first + k, j)]).collect::<Vec<f64>>());
     let mut columns: Vec<Vec<f64>> = slopes.filter(|column| square(column) > 0.0).collect();
@@ -122,18 +123,19 @@ fn correlation(residuals: &[f64], jacobian: &Mat<f64>, first: usize) -> [f64; 2]
         (points - count) as f64 * twice_ln(count) - whitening.log_weight() + determinant
     };
     if points <= count || square(residuals) == 0.0 {
-        return [0.0; 2];
+        return Ok([0.0; 2]);
     }
-    let tried: Vec<_> = (0..=MEMORIES)
+    let tried = (0..=MEMORIES)
         .map(|k| {
             let (memory, mut columns) = (MEMORY * k as f64, columns.clone());
-            columns.iter_mut().for_each(|column| difference(column, memory));
+            let reduce = |column: &mut Vec<f64>| watch.goes_on().map(|()| difference(column, memory));
+            columns.iter_mut().try_for_each(reduce)?;
             let phi = minimum(CORRELATIONS[0], CORRELATIONS[1], TRIED, |phi| unlikelihood(&columns, phi));
-            (unlikelihood(&columns, phi) + if memory > 0.0 { CLEARLY } else { 0.0 }, [phi, memory])
+            Ok((unlikelihood(&columns, phi) + if memory > 0.0 { CLEARLY } else { 0.0 }, [phi, memory]))
         })
-        .collect();
+        .collect::<Result<Vec<_>>>()?;
     let (least, [_, memory]) = tried.iter().fold((f64::INFINITY, [0.0; 2]), |a, b| if b.0 < a.0 { *b } else { a });
     // of memories that are as likely, the longest: with a shorter one deviations are too small
     let margin = if memory > 0.0 { ALIKE } else { 0.0 };
-    tried.iter().rfind(|(cost, _)| *cost <= least + margin).map_or([0.0; 2], |found| found.1)
+    Ok(tried.iter().rfind(|(cost, _)| *cost <= least + margin).map_or([0.0; 2], |found| found.1))
 }

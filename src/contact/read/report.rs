@@ -27,7 +27,8 @@ pub struct StepReport {
     pub dt: f64,
     /// Estimated error in time of the step, relative: of the approach under a given force, of the force under a given
     /// motion. 0 in jumps, which take no time, and of elastic bodies; `None` where nothing was estimated: in steps over
-    /// the bodies ([`Frame::Indenter`](crate::contact::Frame::Indenter)), and where the estimate overflows.
+    /// the bodies ([`Frame::Indenter`](crate::contact::Frame::Indenter)), in steps on elastic states that are not
+    /// adaptive, and where the estimate overflows.
     /// [`ErrorBudget::time`](crate::run::ErrorBudget::time) compares it with true errors.
     pub time_error: Option<f64>,
     /// The quantity of which [`StepReport::time_error`] is the relative error.

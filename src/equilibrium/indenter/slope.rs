@@ -62,7 +62,8 @@ impl Indenter {
     }
 
     fn slopes_of(&self, squared: f64, relief: f64, grid: &Grid) -> Slopes {
-        let longest = grid.lengths().into_iter().fold(0.0, f64::max);
+        // across a line contact the side of its one cell is a unit, not a length of the bodies
+        let longest = (0..2).filter(|&k| grid.cells()[k] > 1).map(|k| grid.lengths()[k]).fold(0.0, f64::max);
         let rises_little = squared < FLAT * FLAT || longest > LONG && relief < LEAST_RISE * longest;
         let too_flat = squared > 0.0 && rises_little && relief > RELIEF * self.gap.datum.abs();
         Slopes { any_steep: squared > STEEP * STEEP, too_flat }
