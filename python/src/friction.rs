@@ -268,8 +268,8 @@ impl FrictionContact {
         slf.contact.sticks().into_pyarray(py).reshape(slf.contact.normal().grid().cells())
     }
 
-    /// Where the work along the surface went since the contact was made [J]: "work" = "slip" + "stored" + "creep". The work of a step is its
-    /// motion times the mean of the tractions at its ends: what slip takes needs short steps.
+    /// Where the work along the surface went since the contact was made [J]: "work" = "slip" + "stored" + "creep". Of a jump it is exact
+    /// as far as each cell slips in one direction; in time its errors are of second order.
     #[getter]
     fn lateral_work<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let contact = &slf.contact;

@@ -309,9 +309,8 @@ impl FrictionContact {
         self.state.force
     }
 
-    /// Where the work along the surface went. That of a step is its motion times the mean of the tractions at its ends:
-    /// what slip takes needs short steps, and a jump from one shear to the opposite one has none. What the bodies store
-    /// takes a convolution for each of their springs.
+    /// Where the work along the surface went. Of a jump it is exact as far as each cell slips in one direction; in time
+    /// its errors are of second order. What the bodies store takes a convolution for each of their springs.
     pub fn lateral_work(&self) -> LateralWork {
         let [work, slip] = self.state.work;
         LateralWork::new(work, slip, self.stored())
