@@ -236,7 +236,7 @@ pub fn sheared_steps_allocate_nothing() {
             let (part, normal) = (0.02 * f64::from(k % 10), Load::force(1.0 - 0.003 * f64::from(k)));
             let shear = ShearLoad::force([part, 0.1 - part]).with_torque(1.0e-5 * part);
             let shear = if k % 7 == 6 { ShearLoad::motion([1.0e-6 * part, 0.0]) } else { shear };
-            let outcome = contact.step(if k % 4 == 0 { 0.0 } else { 0.1 }, normal, shear).unwrap();
+            let outcome = contact.step(if k.is_multiple_of(4) { 0.0 } else { 0.1 }, normal, shear).unwrap();
             assert!(matches!(outcome, Outcome::Holds(_)), "{name}: {outcome:?}");
         };
         (0..3).for_each(&mut step);
