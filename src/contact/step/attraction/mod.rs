@@ -45,6 +45,9 @@ const CHANGE: f64 = 100.0;
 const MOST_CHANGE: f64 = 1e-4;
 /// unless the tolerance is coarse: then it is this part of the tolerance.
 const SHARE: f64 = 0.3;
+/// Traction of a cell that changed by more than this part of the largest in the last step is not extrapolated to the
+/// next.
+const GREATEST_CHANGE: f64 = 0.5;
 
 /// A step of surfaces that attract each other.
 pub(super) struct AttractedStep<'a> {
@@ -104,11 +107,15 @@ impl AttractedStep<'_> {
         self.bodies.fill_gap_of_step(initial, &state.history, &state.held.current.solution.pressure, &mut trial.gap);
     }
 
-    /// Writes z, s and K (z − s) extrapolated from the last two states.
+    /// Writes z, s and K (z − s) extrapolated from the last two states, or of the last state where s has changed much.
     fn extrapolate(&self, trial: &mut Trial) {
         let (state, step) = (self.state, self.step);
         let (now, before) = (&state.held.current.solution, &state.previous.solution);
-        let reach = state.held.extrapolation.reach(step.interval.dt);
+        let mut reach = state.held.extrapolation.reach(step.interval.dt);
+        let changes = now.attraction.iter().zip(&before.attraction).map(|(now, before)| (now - before).abs());
+        if changes.fold(0.0, f64::max) > GREATEST_CHANGE * self.law.traction(0.0) {
+            reach = 0.0;
+        }
         trial.reach = reach;
         let (solution, extrapolated) = (&mut trial.solution, |now: f64, before: f64| now + reach * (now - before));
         fill(&mut solution.pressure, [&now.pressure, &before.pressure], &extrapolated);
