@@ -115,7 +115,7 @@ impl Run {
     /// "max_pressure" [Pa] (in space), or a function of the contact that returns a float. Call it before the first step; `events` has the
     /// crossings.
     ///
-    /// A quantity beyond the value has to come back first, to it or by a millionth of its maximum distance. A function is called with a
+    /// A quantity beyond the value has to come back first, to it, to 0, or by a millionth of its maximum distance. A function is called with a
     /// copy of the contact, some times a step. An exception of it comes out after the step.
     ///
     /// >>> contact = StatesContact(ElasticStates.sphere(10e-3), Material(Rheology.zener(1e6, 1e6, 1.0)))

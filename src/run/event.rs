@@ -123,12 +123,14 @@ impl<C> Event<C> {
     /// The side of a quantity that is `now` so far beyond the value, after it was at `side`; `None` if it has crossed.
     fn side_after(&self, side: Option<Side>, start: f64, now: f64) -> Option<Side> {
         let noise = NOISE * self.greatest;
+        // the force of bodies that are apart is no rounding, however small the value is beside what acted before
+        let is_nothing = now < 0.0 && now == self.crossing.beyond(0.0);
         let crosses = if start == 0.0 { now > 0.0 } else { now >= 0.0 };
         match side {
             None if now > 0.0 => Some(Side::Beyond),
             None => Some(Side::Before),
             Some(Side::Before) if crosses => None,
-            Some(Side::Met | Side::Beyond) if now < -noise => Some(Side::Before),
+            Some(Side::Met | Side::Beyond) if now < -noise || is_nothing => Some(Side::Before),
             Some(Side::Met) if now > noise => Some(Side::Beyond),
             Some(Side::Beyond) if now == 0.0 => Some(Side::Before),
             side => side,

@@ -55,13 +55,13 @@ impl<'a, C: Contact> Run<'a, C> {
     /// ```
     ///
     /// A quantity that lies beyond the value, from the start or after a crossing, has to come back first, by more than
-    /// a millionth of its maximum distance from the value so far, or to the value itself: a force of 1 kN that falls to
-    /// 0 does not come back below 1 mN. The time of a crossing is found to a millionth of a step. Each step is looked
-    /// at where its load turns, as 64 parts of it show, and in the middle between. Where a quantity comes as near to
-    /// its value as it bends, or a quarter of its change, the part is halved again, six times at most. So two crossings
-    /// are missed where both lie within a 64th of a part between two turns, or where the load turns twice within a 64th
-    /// of the step. In space each look costs a contact problem and a copy of the contact, a crossing about ten. Where
-    /// [ranks](crate::parallel) share out the contact the quantity must be the same on all of them.
+    /// a millionth of its maximum distance from the value so far, to the value itself, or to 0. The time of a crossing
+    /// is found to a millionth of a step. Each step is looked at where its load turns, as 64 parts of it show, and in
+    /// the middle between. Where a quantity comes as near to its value as it bends, or a quarter of its change, the
+    /// part is halved again, six times at most. So two crossings are missed where both lie within a 64th of a part
+    /// between two turns, or where the load turns twice within a 64th of the step. In space each look costs a contact
+    /// problem and a copy of the contact, a crossing about ten. Where [ranks](crate::parallel) share out the contact
+    /// the quantity must be the same on all of them.
     ///
     /// # Errors
     /// If the value is not finite. [`Run::next_step`] fails, and takes no step, where the quantity is not a number.
