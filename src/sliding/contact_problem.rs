@@ -184,6 +184,18 @@ impl SlidingProblem<'_> {
         (pressed.map(|(k, _)| k).collect(), height, tilt)
     }
 
+    /// The motion of a body of prescribed approach that touches nothing on its support, upright if it does not then
+    /// either. The search for a support may have been given up: what it found is no proof.
+    fn apart(&self, height: f64, tilt: RigidMotion) -> Option<RigidMotion> {
+        let n2 = self.grid.cells()[1];
+        let clears = |motion: RigidMotion, slack: f64| {
+            self.gap.iter().enumerate().all(|(k, h)| *h >= motion.at(self.grid.center(k / n2, k % n2)) - slack)
+        };
+        let most = self.gap.iter().filter(|h| h.is_finite()).fold(0.0, |most: f64, h| most.max(h.abs()));
+        let is_apart = !self.free.translation && height >= 0.0 && clears(tilt, ROUNDING * most);
+        is_apart.then(|| if clears(RigidMotion::default(), 0.0) { RigidMotion::default() } else { tilt })
+    }
+
     /// The state, from the `guess` of a pressure, where it is positive somewhere.
     ///
     /// A primal–dual active set: on each set of cells the pressure follows from a linear equation, which GMRES solves
@@ -203,10 +215,7 @@ impl SlidingProblem<'_> {
             found.sets += 1;
             if !pressed.contains(&true) {
                 let (support, height, tilt) = self.support();
-                if !free.translation && height >= 0.0 {
-                    // upright if nothing touches then
-                    let upright = gap.iter().all(|&h| h >= 0.0);
-                    let motion = if upright { RigidMotion::default() } else { tilt };
+                if let Some(motion) = self.apart(height, tilt) {
                     return FoundMotion { sets: found.sets, motion, ..FoundMotion::apart(cells) };
                 }
                 support.iter().for_each(|&k| pressed[k] = true);
