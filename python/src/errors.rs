@@ -127,7 +127,10 @@ const NAMES: [(&str, &str); 39] = [
     ("Builder::times", "times="),
     ("Builder::counter_motion", "counter_motion=\"slides\" or \"rolls\""),
     ("CreepSeries::extrapolated", "extrapolated=True of Measurements.fit"),
-    ("choose the other Frame with Settings::with_frame", "take the other frame=, \"indenter\" or \"bodies\""),
+    (
+        "choose the other Frame with Settings::with_frame",
+        "give frame=\"indenter\" or frame=\"bodies\", whichever it is not",
+    ),
     ("Frame::Indenter", "frame=\"indenter\""),
     ("Frame::Bodies", "frame=\"bodies\""),
     ("set Settings::edge to Edge::Allow", "give edge=\"allow\""),

@@ -32,7 +32,7 @@ def test_fields_to_an_accuracy(on_states):
     plain = ball().follow(vc.Load.force(0.3), 1.0, sample_at=[0.5])
     assert [sample.field for _ in plain for sample in plain.samples()] == [None]
     with pytest.raises(ValueError, match="accuracy"):
-        contact.follow(vc.Load.force(0.3), 20.0, fields_to=1.0)
+        contact.follow(vc.Load.force(0.3), 20.0, sample_at=[10.0], fields_to=1.0)
     assert contact.force == pytest.approx(0.3)
 
 
