@@ -164,16 +164,24 @@ fn range(values: &[f64]) -> [f64; 2] {
     [finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max)]
 }
 
+/// Where a body rests when it is lowered and may tilt as its load leaves it free.
+struct Support {
+    /// One cell for an upright body, two or three for one that tilts.
+    cells: Vec<usize>,
+    /// Of the load point \[m\]: below 0 bodies of prescribed approach overlap however they tilt.
+    height: f64,
+    /// The motion to it, without the approach.
+    tilt: RigidMotion,
+}
+
 impl SlidingProblem<'_> {
     /// Whether another thread ends the search.
     pub(super) fn is_cancelled(&self) -> bool {
         self.cancelled.is_some_and(|flag| flag.load(Ordering::Relaxed))
     }
 
-    /// Where the body rests when it is lowered and may tilt as its load leaves it free: the cells, one of an upright
-    /// body, two or three of one that tilts; the height of the load point, below 0 where bodies of prescribed approach
-    /// overlap however they tilt; and the motion to it, without the approach.
-    fn support(&self) -> (Vec<usize>, f64, RigidMotion) {
+    /// Where the body rests.
+    fn support(&self) -> Support {
         let rows = Rows::all(self.grid.cells());
         let modes = Modes::new(self.grid, &rows, Freedom { translation: true, ..self.free });
         let cells = (0..self.gap.len()).filter(|&k| self.gap[k].is_finite());
@@ -181,19 +189,23 @@ impl SlidingProblem<'_> {
         let pressed = supports.into_iter().flatten().filter(|(_, share)| *share > ROUNDING);
         let (height, lowered) = (motion.0[0], modes.physical(motion));
         let tilt = RigidMotion { approach: lowered.approach - height, tilt: lowered.tilt };
-        (pressed.map(|(k, _)| k).collect(), height, tilt)
+        Support { cells: pressed.map(|(k, _)| k).collect(), height, tilt }
+    }
+
+    /// The gap of each cell under a motion.
+    fn moved(&self, motion: RigidMotion) -> impl Iterator<Item = f64> {
+        let n2 = self.grid.cells()[1];
+        self.gap.iter().enumerate().map(move |(k, h)| h - motion.at(self.grid.center(k / n2, k % n2)))
     }
 
     /// The motion of a body of prescribed approach that touches nothing on its support, upright if it does not then
     /// either. The search for a support may have been given up: what it found is no proof.
-    fn apart(&self, height: f64, tilt: RigidMotion) -> Option<RigidMotion> {
-        let n2 = self.grid.cells()[1];
-        let clears = |motion: RigidMotion, slack: f64| {
-            self.gap.iter().enumerate().all(|(k, h)| *h >= motion.at(self.grid.center(k / n2, k % n2)) - slack)
-        };
+    fn apart(&self, Support { height, tilt, .. }: &Support) -> Option<RigidMotion> {
         let most = self.gap.iter().filter(|h| h.is_finite()).fold(0.0, |most: f64, h| most.max(h.abs()));
-        let is_apart = !self.free.translation && height >= 0.0 && clears(tilt, ROUNDING * most);
-        is_apart.then(|| if clears(RigidMotion::default(), 0.0) { RigidMotion::default() } else { tilt })
+        let clears = self.moved(*tilt).all(|h| h >= -ROUNDING * most);
+        let is_apart = !self.free.translation && *height >= 0.0 && clears;
+        let is_upright = self.gap.iter().all(|h| *h >= 0.0);
+        is_apart.then(|| if is_upright { RigidMotion::default() } else { *tilt })
     }
 
     /// The state, from the `guess` of a pressure, where it is positive somewhere.
@@ -214,11 +226,11 @@ impl SlidingProblem<'_> {
         while found.sets < MOST_SETS && !self.is_cancelled() {
             found.sets += 1;
             if !pressed.contains(&true) {
-                let (support, height, tilt) = self.support();
-                if let Some(motion) = self.apart(height, tilt) {
+                let support = self.support();
+                if let Some(motion) = self.apart(&support) {
                     return FoundMotion { sets: found.sets, motion, ..FoundMotion::apart(cells) };
                 }
-                support.iter().for_each(|&k| pressed[k] = true);
+                support.cells.iter().for_each(|&k| pressed[k] = true);
             }
             let (balance, mut p) = self.balance(&mut pressed, &found.pressure);
             found.displacement = bodies.displacement(&balance.field(&p, cells));
@@ -270,7 +282,7 @@ impl SlidingProblem<'_> {
         if !self.free.tilts() || balance.holds(&p, self.free.total, self.tolerance) {
             return (balance, p);
         }
-        self.support().0.iter().for_each(|&k| pressed[k] = true);
+        self.support().cells.iter().for_each(|&k| pressed[k] = true);
         on(pressed)
     }
 
@@ -344,11 +356,8 @@ impl SlidingProblem<'_> {
     /// The cells of a first set: the lowest ones, those below zero under a prescribed approach, of a body that leans
     /// on its support.
     fn lowest(&self) -> Vec<bool> {
-        let n2 = self.grid.cells()[1];
-        let tilt = if self.free.tilts() { self.support().2 } else { RigidMotion::default() };
-        let leans =
-            |(k, h): (usize, &f64)| if self.free.tilts() { h - tilt.at(self.grid.center(k / n2, k % n2)) } else { *h };
-        let gap: Vec<f64> = self.gap.iter().enumerate().map(leans).collect();
+        let tilt = if self.free.tilts() { self.support().tilt } else { RigidMotion::default() };
+        let gap: Vec<f64> = self.moved(tilt).collect();
         let mut heights: Vec<f64> = gap.iter().copied().filter(|h| h.is_finite()).collect();
         let level = if self.free.translation {
             let place = ((FIRST_PART * heights.len() as f64) as usize).min(heights.len() - 1);
