@@ -216,7 +216,7 @@ impl Fit {
             let (times, ratios) = (of.times.to_vec(), of.ratios.to_vec());
             Ok(dict! { py; of { assumption, aicc_difference }, "times": times, "ratios": ratios })
         };
-        self.watched(py, |fit| Ok(fit.variants()))?.into_iter().map(of).collect()
+        self.watched(py, |fit| fit.variants())?.into_iter().map(of).collect()
     }
 
     /// The fit of a curve at each of its times, as arrays: "time" [s], "force" [N], "depth" and "contact_depth" [m].

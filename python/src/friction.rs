@@ -269,7 +269,7 @@ impl FrictionContact {
     }
 
     /// Where the work along the surface went since the contact was made [J]: "work" = "slip" + "stored" + "creep". Of a jump it is exact
-    /// as far as each cell slips in one direction; in time its errors are of second order.
+    /// as far as each cell slips in one direction; in time the errors of the work are of second order.
     #[getter]
     fn lateral_work<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let contact = &slf.contact;

@@ -159,7 +159,9 @@ impl HeightMap {
 
     /// The map with missing heights filled by harmonic interpolation.
     fn filled(slf: &Bound<'_, Self>) -> PyResult<Py<HeightMap>> {
-        HeightMap::changed(slf, "filled", (slf.clone(),), geo::HeightMap::filled)
+        let (cancel, map) = (AtomicBool::new(false), (*slf.get().0).clone());
+        let filled = interruptible(slf.py(), true, &cancel, || map.filled_unless(&cancel))?;
+        HeightMap::changed(slf, "filled", (slf.clone(),), |_| Ok(filled))
     }
 
     /// The map with nothing to touch where heights are missing.

@@ -231,22 +231,21 @@ impl ElasticStates {
         if !times.is_sorted_by(|one, next| one < next) {
             return Err(PyValueError::new_err("times: they must ascend, each once"));
         }
-        let mut values = Vec::with_capacity(3 * materials.len() * times.len());
+        let (cancel, mut values) = (Arc::default(), Vec::with_capacity(3 * materials.len() * times.len()));
         for material in &materials {
             let material = &material.get().material;
-            let rows = free(py, || -> vc::Result<Vec<[f64; 4]>> {
+            let rows = interruptible(py, true, &cancel, || -> vc::Result<Vec<[f64; 4]>> {
                 let contact = st::StatesContact::new(&self.states, material)?;
                 let run = contact.into_follow(Arc::clone(&history), Stepping::adaptive(tolerance), until);
-                let (mut run, mut rows) = (run.sample_at(&times)?, Vec::with_capacity(times.len()));
+                let run = run.cancelled_by(Arc::clone(&cancel)).sample_at(&times)?;
+                let (mut run, mut rows) = (run, Vec::with_capacity(times.len()));
                 while run.next_step()?.is_some() {
                     rows.extend(asked_for(&run, |sample| sample.contact().state())?);
                 }
                 Ok(rows)
-            });
-            let rows = rows.or_raise()?;
+            })?;
             one_for_each("of the times, which must lie after 0", "states", rows.len(), times.len())?;
             values.extend(rows.iter().flat_map(|row| &row[1..]));
-            py.check_signals()?;
         }
         to_array(py, values, &[materials.len(), times.len(), 3])
     }

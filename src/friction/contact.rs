@@ -76,6 +76,8 @@ pub(super) struct StepFields {
     entered: Vec<f64>,
     drift: Vec<f64>,
     free: Vec<f64>,
+    /// What acts in the mean of the step.
+    mean: Vec<f64>,
     trial: Solution,
     work: Work,
 }
@@ -172,7 +174,7 @@ impl FrictionContact {
         self.bind()?;
         let FrictionContact { kernel, state, step, .. } = self;
         let State { history, solution, motion, region, .. } = state;
-        let StepFields { places, bound, entered, drift, free, trial, work, .. } = step;
+        let StepFields { places, bound, entered, drift, free, mean, trial, work } = step;
         let (time, cells) = (normal.time, region.len());
         let area = self.normal.grid().cell_area();
         history.predict(dt, Interpolant::Linear, free);
@@ -215,7 +217,9 @@ impl FrictionContact {
         // what parts slips as its traction falls
         let parting = (0..cells).filter(|&i| bound[i] == 0.0 && solution.cells[i] != Cell::Apart);
         problem.gradient(parting, &work.stress, trial.motion, &mut trial.gradient);
-        let works = problem.works(solution, trial, change);
+        free.iter_mut().zip(&trial.traction).for_each(|(u, traction)| *u += compliance * traction);
+        history.mean_stress(free, mean);
+        let works = problem.works(solution, trial, given, [mean, &work.stress]);
         state.work.iter_mut().zip(works).for_each(|(work, of_step)| *work += area * of_step);
         state.load_share = 1.0 / factor;
         // beside what friction could cause
@@ -224,7 +228,6 @@ impl FrictionContact {
         let arm = self.normal.fields().contact_area().sqrt();
         let now = [size(*motion, arm), size(state.force, arm.recip())];
         (0..2).for_each(|k| state.largest[k] = state.largest[k].max(now[k]).max(NEGLIGIBLE * could[k]));
-        free.iter_mut().zip(&trial.traction).for_each(|(u, traction)| *u += compliance * traction);
         history.commit(free, &[]);
         std::mem::swap(solution, trial);
         let convolution_equivalents = kernel.equivalents(self.normal.grid().cells());
@@ -246,13 +249,13 @@ impl FrictionContact {
     pub(super) fn fit_to_region(&mut self) {
         let (grid, region) = (self.normal.grid(), self.state.region);
         let ([_, columns], n) = (grid.cells(), region.len());
-        let StepFields { places, bound, entered, drift, free, trial, work } = &mut self.step;
+        let StepFields { places, bound, entered, drift, free, mean, trial, work } = &mut self.step;
         if n > 0 {
             self.kernel = TangentialKernel::new(&self.response, region.cells);
         }
         *places = region.on_grid(columns).map(|k| grid.center(k / columns, k % columns)).collect();
         [bound, entered].into_iter().for_each(|field| field.resize(n, 0.0));
-        [drift, free].into_iter().for_each(|field| field.resize(2 * n, 0.0));
+        [drift, free, mean].into_iter().for_each(|field| field.resize(2 * n, 0.0));
         trial.resize(n);
         work.resize(n);
     }
@@ -309,8 +312,8 @@ impl FrictionContact {
         self.state.force
     }
 
-    /// Where the work along the surface went. Of a jump it is exact as far as each cell slips in one direction; in time
-    /// its errors are of second order. What the bodies store takes a convolution for each of their springs.
+    /// Where the work along the surface went. Of a jump it is exact as far as each cell slips in one direction. What the
+    /// bodies store takes a convolution for each of their springs.
     pub fn lateral_work(&self) -> LateralWork {
         let [work, slip] = self.state.work;
         LateralWork::new(work, slip, self.stored())

@@ -98,23 +98,30 @@ impl Problem<'_> {
         }
     }
 
-    /// The work of a step and what slip dissipates of it. The bodies take up ½ Σ (τ_before + τ)·Δu with the change
-    /// Δu = a B Δd + g of their surface; of a jump this is exact, and stored. A cell that slips carries its bound while
-    /// it does: it dissipates |g| times the mean of what it carried when it began and at the end.
-    pub(super) fn works(&self, before: &Solution, now: &Solution, motion: [f64; 3]) -> [f64; 2] {
+    /// The work of a step and what slip dissipates of it, by what acts in the mean of the step and by K τ. The bodies
+    /// take up Σ mean·Δu with the change Δu = a B Δd + g of their surface: what their springs and dashpots have of it
+    /// to the last digit, for a displacement that is linear in time. A cell that slips carries its bound while it does:
+    /// it dissipates |g| times the mean of what it carried when it began and at the end.
+    pub(super) fn works(
+        &self,
+        before: &Solution,
+        now: &Solution,
+        given: [f64; 3],
+        [mean, stress]: [&[f64]; 2],
+    ) -> [f64; 2] {
         let n = self.cells();
         (0..n).fold([0.0; 2], |[work, slip], i| {
-            let [old, new] = [before.of(i), now.of(i)];
-            let (mean, g) = ([0, 1].map(|axis| 0.5 * (old[axis] + new[axis])), [now.gradient[i], now.gradient[n + i]]);
-            let moved = (0..3).map(|k| motion[k] * dot(self.mode(k, i), mean)).sum::<f64>();
+            let [old, new, g] = [before.of(i), now.of(i), [now.gradient[i], now.gradient[n + i]]];
+            let along = (0..3).map(|k| given[k] * dot(self.mode(k, i), [mean[i], mean[n + i]])).sum::<f64>();
+            let taken = [i, n + i].map(|at| mean[at] * (self.compliance * stress[at] + self.drift[at]));
             let size = new[0].hypot(new[1]);
             let lost = match (now.cells[i], before.cells[i]) {
                 (Cell::Stick, _) => 0.0,
-                (Cell::Apart, _) => -dot(g, mean),
+                (Cell::Apart, _) => -0.5 * dot(g, old),
                 (Cell::Slip, Cell::Stick) => size * g[0].hypot(g[1]),
                 (Cell::Slip, _) => 0.5 * (old[0].hypot(old[1]) + size) * g[0].hypot(g[1]),
             };
-            [work + self.entered[i] * moved + dot(g, mean) + lost, slip + lost]
+            [work + self.entered[i] * along + taken[0] + taken[1] + lost, slip + lost]
         })
     }
 

@@ -53,6 +53,25 @@ impl Past {
         }
     }
 
+    /// Writes E∞ (U + ½ ΔU) + Σ (φ₁ q_i + φ₂ E_i ΔU) + η ΔU/Δ, what acts in the mean of the step that the rule weighed
+    /// last, if U is linear on it and ends at `now`: q_i relaxes from its start as e^(−s/τ_i).
+    fn mean_stress(&self, rule: &mut ExponentialRule, now: &[f64], mean: &mut Vec<f64>) {
+        let [displacements, _, _, stresses @ ..] = &self.columns[..] else { return };
+        let mut of_change = 0.5 * rule.equilibrium() + rule.viscous_of_time();
+        mean.clear();
+        mean.resize(now.len(), 0.0);
+        for (first, columns) in (0..).step_by(3).zip(stresses.chunks(3)) {
+            let mut weights = [0.0; 3];
+            for (branch, weight) in weights.iter_mut().take(columns.len()).enumerate() {
+                let [of_stress, of_moved] = rule.mean_of(first + branch);
+                (*weight, of_change) = (of_stress, of_change + of_moved);
+            }
+            let column = |k: usize| &columns[k.min(columns.len() - 1)][..];
+            combine(mean, 1.0, weights, [column(0), column(1), column(2)]);
+        }
+        combine(mean, 1.0, [rule.equilibrium() - of_change, of_change, 0.0], [displacements, now, now]);
+    }
+
     /// Takes in the step that the rule has committed, which ends at the displacements `now`.
     fn commit(&mut self, rule: &ExponentialRule, now: &[f64]) {
         let Past { columns, twists } = self;
@@ -153,6 +172,18 @@ impl GroupHistory {
     /// U of each group at the end of the step predicted last, if nothing shears it any more.
     pub(crate) fn predict_shear(&self, free: &mut Vec<f64>) {
         self.tangential.iter().for_each(|past| past.free_displacements(&self.rule, free));
+    }
+
+    /// What acts on each group in the mean of the step predicted last, which ends at these displacements and is linear.
+    #[cfg(feature = "friction")]
+    pub(crate) fn mean_stress(&mut self, now: &[f64], mean: &mut Vec<f64>) {
+        self.normal.mean_stress(&mut self.rule, now, mean);
+    }
+
+    /// The same along the surface.
+    #[cfg(feature = "states")]
+    pub(crate) fn mean_shear(&mut self, now: &[f64], mean: &mut Vec<f64>) {
+        self.tangential.iter().for_each(|past| past.mean_stress(&mut self.rule, now, mean));
     }
 
     /// Accepts the step predicted last, which ends at the displacements `now`, and along the surface at `sheared`.

@@ -4,13 +4,14 @@
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub struct LateralWork {
-    /// ∫ Q dd + ∫ M dφ, done on the bodies by the forces along the surface and the torque.
+    /// ∫ Q dd + ∫ M dφ, done on the bodies by the forces along the surface and the torque; its errors in time are of
+    /// second order.
     pub work: f64,
     /// Dissipated by slip in the contact.
     pub slip: f64,
     /// Stored in the bodies, to come back.
     pub stored: f64,
-    /// Dissipated by creep in the bodies: what is left of the work, whose errors in time are of second order.
+    /// Dissipated by creep in the bodies, by displacements that are linear in each step.
     pub creep: f64,
 }
 

@@ -220,9 +220,7 @@ impl StatesContact {
         let (demand, wanted, reduced) = self.predict(time, dt, load)?;
         let along = self.along(time, dt, along)?;
         along.map_or(Ok(()), |along| self.levels.check_shear(&self.states, time, along, wanted))?;
-        let crept = (dt == 0.0).then(|| self.levels.crept_along());
         self.levels.accept(&self.states, demand, wanted, along);
-        crept.into_iter().for_each(|crept| self.levels.work_at_once(crept));
         (self.time, self.reduced_time) = (time, reduced);
         self.prescribed = if let Load::Approach { approach, .. } = load { Some(approach) } else { None };
         if self.groups() == 0 {

@@ -142,6 +142,9 @@ pub struct Relaxation {
     pub terms: Vec<(f64, f64)>,
 }
 
+/// One field times the displacement by another.
+pub type Form<'a> = dyn Fn(&[f64], &[f64]) -> f64 + 'a;
+
 /// Displacements that follow it, linear in each step, and v = E∗du.
 #[derive(Clone)]
 pub struct Past {
@@ -174,6 +177,26 @@ impl Relaxation {
             c * (sum * past.now[k] - kept)
         };
         (c, (0..past.now.len()).map(free).collect())
+    }
+
+    /// What dashpots dissipate in a step that ends at `now`, with the displacements of `form`: q′ = E U′ − q/τ has
+    /// q = a + b exp(−s/τ), whose square is integrated.
+    pub fn dissipated(&self, dt: f64, past: &Past, now: &[f64], form: &Form<'_>) -> f64 {
+        let of_term = |(&(modulus, time), q): (&(f64, f64), &Vec<f64>)| {
+            let rate = |k: usize| modulus * time * (now[k] - past.now[k]) / dt;
+            let a: Vec<f64> = (0..now.len()).map(rate).collect();
+            let b: Vec<f64> = q.iter().zip(&a).map(|(q, a)| q - a).collect();
+            let decay = (-dt / time).exp();
+            let integrals = [dt, 2.0 * time * (1.0 - decay), 0.5 * time * (1.0 - decay * decay)];
+            let squares = [form(&a, &a), form(&a, &b), form(&b, &b)];
+            integrals.iter().zip(squares).map(|(of, square)| of * square).sum::<f64>() / (modulus * time)
+        };
+        if dt == 0.0 { 0.0 } else { self.terms.iter().zip(&past.stresses).map(of_term).sum() }
+    }
+
+    pub fn stored(&self, past: &Past, form: &Form<'_>) -> f64 {
+        let springs = self.terms.iter().zip(&past.stresses).map(|(&(modulus, _), q)| form(q, q) / modulus);
+        0.5 * (self.equilibrium * form(&past.now, &past.now) + springs.sum::<f64>())
     }
 
     pub fn commit(&self, dt: f64, past: &mut Past, now: Vec<f64>) {

@@ -58,6 +58,7 @@ struct Worst {
     pressure: f64,
     traction: f64,
     displacement: f64,
+    /// By slip and by creep.
     loss: f64,
     over: f64,
     steps: usize,
@@ -102,6 +103,8 @@ fn compare(seed: u64, worst: &mut Worst) {
     let (mut normal, mut lateral) = (Past::new(&relaxation, cells), Past::new(&relaxation, cells));
     let (mut d, mut traction) = (0.0, vec![0.0; cells]);
     let (mut lost, mut before) = (0.0, 0.0);
+    let (mut bodies, mut crept) = (Past::new(&relaxation, cells), 0.0);
+    let form = |one: &[f64], other: &[f64]| one.iter().zip(body.displacement(other)).map(|(a, b)| a * b).sum();
     let field = |tractions: &mut dyn Iterator<Item = (f64, f64)>| {
         let (mut field, mut below) = (vec![0.0; cells], vec![0.0; cells]);
         for (level, traction) in tractions {
@@ -128,6 +131,10 @@ fn compare(seed: u64, worst: &mut Worst) {
         let now = (0..cells).map(|k| c * displaced[k] + free[k]).collect();
         relaxation.commit(dt, &mut lateral, now);
         (d, traction) = (d + motion, found);
+        let (c, free) = relaxation.step(dt, &bodies);
+        let moved: Vec<f64> = free.iter().zip(&traction).map(|(free, traction)| free + c * traction).collect();
+        crept += relaxation.dissipated(dt, &bodies, &moved, &form);
+        relaxation.commit(dt, &mut bodies, moved);
 
         contact.step_sheared(dt, Load::force(force), Load::force(along)).unwrap();
         let most = pressure.iter().copied().fold(0.0, f64::max);
@@ -137,7 +144,8 @@ fn compare(seed: u64, worst: &mut Worst) {
         before = f64::max(before, d.abs());
         worst.displacement = worst.displacement.max((contact.lateral_displacement() - d).abs() / before);
         let work = contact.lateral_work();
-        worst.loss = worst.loss.max((work.slip - lost).abs() / (work.work.abs() + lost));
+        let off = f64::max((work.slip - lost).abs(), (work.creep - crept).abs());
+        worst.loss = worst.loss.max(off / (work.work.abs() + lost));
         let over =
             contact.tractions().zip(contact.shear_tractions()).map(|(w, theta)| theta.1.abs() / (friction * w.1));
         worst.over = over.fold(worst.over, f64::max);

@@ -4,6 +4,7 @@ use viscocontact::friction::{Coulomb, FrictionContact, LateralWork, ShearLoad};
 use viscocontact::prelude::*;
 use viscocontact::states::{Reach, StatesContact, Sweep};
 
+use super::bodies::Past;
 use super::dense::relaxation;
 use super::space::{half_space, pair, periodic};
 use super::space_known::{holds, tight};
@@ -11,49 +12,9 @@ use super::space_known::{holds, tight};
 const N: usize = 12;
 const STEPS: [u32; 3] = [32, 64, 128];
 
-/// τ K τ′ of tractions whose components follow each other.
-type Form = Box<dyn Fn(&[f64], &[f64]) -> f64>;
-
-/// A spring E∞ beside a spring E1 in series with a dashpot E1 τ, in each cell: they carry E∞ U and q of the tractions.
-struct Maxwell {
-    form: Form,
-    moduli: [f64; 2],
-    time: f64,
-    displacement: Vec<f64>,
-    stress: Vec<f64>,
-    dissipated: f64,
-}
-
-impl Maxwell {
-    fn stored(&self) -> f64 {
-        let Maxwell { form, moduli, displacement, stress, .. } = self;
-        0.5 * (moduli[0] * form(displacement, displacement) + form(stress, stress) / moduli[1])
-    }
-
-    /// To these tractions, with U linear in time: q′ = E1 U′ − q/τ has q = a + b exp(−s/τ), whose square is integrated.
-    fn step(&mut self, dt: f64, traction: &[f64]) {
-        let Maxwell { form, moduli: [rest, more], time, displacement, stress, dissipated } = self;
-        let (time, decay) = (*time, (-dt / *time).exp());
-        let answer = if dt > 0.0 { *more * time * (1.0 - decay) / dt } else { *more };
-        let (mut a, mut b) = (vec![0.0; stress.len()], vec![0.0; stress.len()]);
-        for (k, now) in traction.iter().enumerate() {
-            let change = (now - *rest * displacement[k] - decay * stress[k]) / (*rest + answer);
-            displacement[k] += change;
-            if dt > 0.0 {
-                a[k] = *more * time * change / dt;
-                b[k] = stress[k] - a[k];
-            }
-            stress[k] = decay * stress[k] + answer * change;
-        }
-        let integrals = [dt, 2.0 * time * (1.0 - decay), 0.5 * time * (1.0 - decay * decay)];
-        let squares = [form(&a, &a), form(&a, &b), form(&b, &b)];
-        *dissipated += integrals.iter().zip(squares).map(|(of, square)| of * square).sum::<f64>() / (*more * time);
-    }
-}
-
 /// A ball on a body of one relaxation time, pressed and sheared at once, then sheared and turned in so many steps: work,
-/// loss by slip, creep, and what it has beyond that of the dashpots.
-fn balance(is_periodic: bool, is_pressed: bool, steps: u32) -> [f64; 4] {
+/// loss by slip, creep, what it has beyond that of the dashpots, and what the work has beyond ∫ Q dd by trapezia.
+fn balance(is_periodic: bool, is_pressed: bool, steps: u32) -> [f64; 5] {
     let (nu, side, relaxation) = (0.3, 1.0 / N as f64, relaxation(0));
     let grid = Grid::square(N, 1.0).unwrap();
     let shape = FnGeometry::new(|x, y| 0.5 * (x * x + y * y));
@@ -74,13 +35,11 @@ fn balance(is_periodic: bool, is_pressed: bool, steps: u32) -> [f64; 4] {
         };
         side * side * (0..n).flat_map(|i| (0..n).map(move |j| (i, j))).map(|(i, j)| at(i, j)).sum::<f64>()
     };
-    let (terms, zero) = (relaxation.terms[0], || vec![0.0; 2 * n]);
-    let moduli = [relaxation.equilibrium, terms.0];
-    let mut body =
-        Maxwell { form: Box::new(form), moduli, time: terms.1, displacement: zero(), stress: zero(), dissipated: 0.0 };
+    let (mut body, mut dissipated) = (Past::new(&relaxation, 2 * n), 0.0);
     let force = 0.05;
     let pressed = |t: f64| if is_pressed { Load::force(force * (1.0 + 0.2 * t)) } else { Load::approach(0.06) };
     let (dt, mut largest) = (4.0 / f64::from(steps), 0.0f64);
+    let (mut outside, mut last) = (0.0, [[0.0; 3]; 2]);
     for step in 0..=steps {
         let t = f64::from(step) * dt;
         // a relaxing contact carries less and less
@@ -88,14 +47,22 @@ fn balance(is_periodic: bool, is_pressed: bool, steps: u32) -> [f64; 4] {
         let [q1, q2] = [0.8 * (1.5 * t + 0.2).sin(), 0.3 * (3.0 * t).sin()].map(|part| 0.35 * carried * part);
         let length = if step == 0 { 0.0 } else { dt };
         holds(contact.step(length, pressed(t), ShearLoad::force([q1, q2]).with_torque(0.1 * q1)).unwrap());
-        body.step(length, &contact.traction().concat());
-        let work = contact.lateral_work();
+        let (c, free) = relaxation.step(length, &body);
+        let traction = contact.traction().concat();
+        let moved: Vec<f64> = free.iter().zip(traction).map(|(free, traction)| free + c * traction).collect();
+        dissipated += relaxation.dissipated(length, &body, &moved, &form);
+        relaxation.commit(length, &mut body, moved);
+        let (work, stored) = (contact.lateral_work(), relaxation.stored(&body, &form));
         largest = largest.max(work.stored);
-        assert!((work.stored - body.stored()).abs() < 1e-9 * largest, "{step}: {} {}", work.stored, body.stored());
+        assert!((work.stored - stored).abs() < 1e-9 * largest, "{step}: {} {stored}", work.stored);
         assert_eq!(work.work - work.slip - work.stored, work.creep);
+        let now = [contact.force(), contact.motion()];
+        let of_step: f64 = (0..3).map(|k| 0.5 * (last[0][k] + now[0][k]) * (now[1][k] - last[1][k])).sum();
+        // the cells of a jump are met one after the other while the force rises
+        (outside, last) = (if step == 0 { work.work } else { outside + of_step }, now);
     }
     let work = contact.lateral_work();
-    [work.work, work.slip, work.creep, work.creep - body.dissipated]
+    [work.work, work.slip, work.creep, work.creep - dissipated, work.work - outside]
 }
 
 /// A cylinder on a body of one relaxation time that is pressed and sheared to and fro by forces: on cells and on states,
@@ -107,8 +74,8 @@ fn energies_in_space_are_those_on_states() {
     let kernel = InfluenceKernel::line(&grid, 3.0).unwrap();
     let force = 0.05;
     let states = Sweep::new(grid.clone(), &shape).kernel(kernel.clone()).run(Reach::Level(8.0 * force)).unwrap();
-    let mut last = f64::INFINITY;
-    for steps in [16, 64] {
+    // with more steps and cells, what is between the states of the sweep is left, 1 % of the slip
+    for (steps, most) in [(16, 5e-4), (64, 2e-4)] {
         let scene = ViscoelasticContact::builder(grid.clone()).geometry(&shape).material(material.clone());
         let scene = scene.kernel(kernel.clone()).settings(tight());
         let mut space = FrictionContact::new(scene, Coulomb::new(0.5).unwrap()).unwrap();
@@ -126,24 +93,25 @@ fn energies_in_space_are_those_on_states() {
         let [by_cells, by_levels] = energies;
         let off = (0..4).map(|k| (by_cells[k] - by_levels[k]).abs() / by_cells[0]).fold(0.0, f64::max);
         println!("{steps}: {by_cells:?} {by_levels:?} {off:.1e}");
-        assert!(off < 0.4 * last);
-        last = off;
+        assert!(off < most);
     }
-    assert!(last < 2e-3);
 }
 
 #[test]
 fn work_is_stored_or_lost_by_slip_and_by_creep() {
     for (is_periodic, is_pressed) in [(false, false), (false, true), (true, false), (true, true)] {
         let found = STEPS.map(|steps| balance(is_periodic, is_pressed, steps));
-        for ([work, slip, creep, off], steps) in found.iter().zip(STEPS) {
-            println!("{is_periodic} {is_pressed} {steps}: {work:.4e} {slip:.3e} {creep:.3e} {:.2e}", off / work);
-            assert!(*slip > 0.02 * work && *creep > 0.3 * work && off.abs() < 8.0 * work / f64::from(steps * steps));
+        for ([work, slip, creep, off, outside], steps) in found.iter().zip(STEPS) {
+            let off = off / work;
+            println!(
+                "{is_periodic} {is_pressed} {steps}: {work:.4e} {slip:.3e} {creep:.3e} {off:.1e} {:.2e}",
+                outside / work
+            );
+            assert!(*slip > 0.02 * work && *creep > 0.3 * work && off.abs() < 1e-9);
+            assert!(outside.abs() < 8.0 * work / f64::from(steps * steps));
         }
-        for pair in found.windows(2) {
-            let ratio = pair[0][3] / pair[1][3];
-            assert!((3.6..4.4).contains(&ratio), "{is_periodic} {is_pressed}: {ratio}");
-        }
+        let ratio = found[0][4] / found[2][4];
+        assert!(ratio > 12.0, "{is_periodic} {is_pressed}: {ratio}");
     }
 }
 

@@ -1,6 +1,8 @@
 //! How far a misfit may be trusted.
 
+use crate::error::Result;
 use crate::fit::Fit;
+use crate::identification::Identification;
 use crate::noise::Noise;
 use crate::parameters::Nuisance;
 use crate::statistics::scatter;
@@ -35,7 +37,10 @@ impl Fit {
 
     /// What the answer depends on: the same curves with a drift, with a tilt, with correlated noise and without outliers, each alone. Where the moduli
     /// of the variants differ by more than the deviations of the fit, the difference is the uncertainty. Variants that fail are left out.
-    pub fn variants(&self) -> Vec<Variant> {
+    ///
+    /// # Errors
+    /// If a watch ends it.
+    pub fn variants(&self) -> Result<Vec<Variant>> {
         let [first, last] = self.problem.window;
         let times = [first, (first * last).sqrt(), last];
         let base = &self.identification;
@@ -45,11 +50,12 @@ impl Fit {
             ("correlated noise", base.clone().noise(Noise::Autoregressive)),
             ("no outliers", base.clone().robust()),
         ];
-        let variant = |(assumption, identification): (&'static str, crate::identification::Identification)| {
+        let variant = |(assumption, identification): (&'static str, Identification)| {
             let fit = identification.fit(&self.curves).ok()?;
             let ratios = times.map(|time| fit.modulus(time) / self.modulus(time));
             Some(Variant { assumption, times, ratios, aicc_difference: fit.aicc() - self.aicc() })
         };
-        all.into_iter().filter_map(variant).collect()
+        let found = all.into_iter().filter_map(variant).collect();
+        self.goes_on().map(|()| found)
     }
 }

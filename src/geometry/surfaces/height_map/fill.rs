@@ -1,5 +1,7 @@
 //! Interpolation of missing heights.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use super::HeightMap;
 use crate::error::{Error, MapError, Result};
 use crate::memory;
@@ -17,7 +19,15 @@ impl HeightMap {
     /// # Errors
     /// If no height is known, the iteration does not converge ([`MapError::NotFilled`]), or there is no memory for it:
     /// 16 bytes per point, and 120 more per missing point.
-    pub fn filled(mut self) -> Result<HeightMap> {
+    pub fn filled(self) -> Result<HeightMap> {
+        self.filled_unless(&AtomicBool::new(false))
+    }
+
+    /// [`HeightMap::filled`], ended within an iteration where another thread sets `cancelled`.
+    ///
+    /// # Errors
+    /// As [`HeightMap::filled`], and [`Error::Cancelled`].
+    pub fn filled_unless(mut self, cancelled: &AtomicBool) -> Result<HeightMap> {
         self.require_known()?;
         if self.missing == 0 {
             return Ok(self);
@@ -29,7 +39,7 @@ impl HeightMap {
         let middle = 0.5 * low + 0.5 * self.highest;
         // along the axis of the smaller weight heights err by a residual over this weight
         let tolerance = (TOLERANCE * laplacian.least_weight).max(ROUNDING);
-        let values = laplacian.solve(&self, middle, tolerance * (self.highest - low))?;
+        let values = laplacian.solve(&self, middle, tolerance * (self.highest - low), cancelled)?;
         // A mean does not exceed its terms: any excess is within the tolerance.
         for (&point, value) in laplacian.points.iter().zip(values) {
             self.heights[point] = (middle + value).clamp(low, self.highest);
@@ -89,7 +99,7 @@ impl Laplacian {
 
     /// The missing heights relative to `middle`, by preconditioned conjugate gradients. The equations are symmetric and
     /// positive definite, because every hole has known heights at its edge.
-    fn solve(&self, map: &HeightMap, middle: f64, tolerance: f64) -> Result<Vec<f64>> {
+    fn solve(&self, map: &HeightMap, middle: f64, tolerance: f64, cancelled: &AtomicBool) -> Result<Vec<f64>> {
         let mut residual: Vec<f64> = (self.neighbours.iter())
             .map(|around| {
                 let known = around.iter().filter(|(k, w)| *w > 0.0 && self.unknown[*k].is_none());
@@ -106,6 +116,9 @@ impl Laplacian {
         for _ in 0..max_iterations {
             if greatest(&residual) <= tolerance {
                 return Ok(values);
+            }
+            if cancelled.load(Ordering::Relaxed) {
+                return Err(Error::Cancelled { what: "the filling of a map" });
             }
             self.apply(&direction, &mut product);
             let step = norm / dot(&direction, &product);
@@ -188,5 +201,12 @@ mod tests {
         }
         let nothing = HeightMap::new([2, 1], [1.0, 1.0], vec![f64::NAN; 2]).unwrap();
         assert_eq!(nothing.filled(), Err(Error::Map(MapError::NothingKnown)));
+    }
+
+    #[test]
+    fn filling_can_be_cancelled() {
+        let holed = map_of([20, 20], |x1, x2| if x1.abs() < 0.3 { f64::NAN } else { x1 + x2 });
+        let cancelled = AtomicBool::new(true);
+        assert!(matches!(holed.filled_unless(&cancelled), Err(Error::Cancelled { .. })));
     }
 }

@@ -1,7 +1,8 @@
 //! What a step does along the surface: how far its groups move, and what they lose by slip.
 
-use super::{Outcome, inner_work, widths};
-use crate::states::levels::{Demand, Levels};
+use super::{Outcome, Shear, inner_work, widths};
+use crate::hereditary::GroupHistory;
+use crate::states::levels::{Demand, Group, Levels};
 
 /// What levels lose that begin to slip while the edge moves, over what they would lose if it stood where it ends. A zone
 /// that slips is `now` so wide, was `before`, and its inner end went so far in the step; each level that it passes loses
@@ -17,6 +18,20 @@ fn travelled(now: f64, before: f64, far: f64) -> f64 {
     (1.0 + before + before * before) * far / ((1.0 + rest + rest * rest) * far.min(1.0))
 }
 
+/// What the bodies take up in a step whose displacements are linear in time: ∫∫ θ(l) ΔU(l′) κ(max(l, l′)) dl dl′ with θ
+/// in its mean. Their springs and dashpots have no more and no less of it.
+fn taken(history: &mut GroupHistory, groups: &[Group], Shear { trial, mean, .. }: &mut Shear) -> f64 {
+    history.mean_shear(trial, mean);
+    let Some(before) = history.sheared() else { return 0.0 };
+    let (mut below, mut sum) = ([0.0; 2], 0.0);
+    for k in 0..groups.len() {
+        let ([width, depth], stress, moved) = (widths(groups, k), mean[k], trial[k] - before[k]);
+        sum += depth * (stress * below[1] + moved * below[0]) + 2.0 * stress * moved * inner_work(groups, k, width);
+        below = [below[0] + stress * width, below[1] + moved * width];
+    }
+    sum
+}
+
 impl Levels {
     /// Moves the groups by their tractions, and takes in what the step has done.
     pub(super) fn commit_shear(&mut self, along: Demand, edge: f64, outcome: &Outcome) {
@@ -24,7 +39,7 @@ impl Levels {
         let (compliance, level) = (self.history.rule().compliance(), self.level);
         let Levels { history, groups, shear: Some(shear), .. } = self else { return };
         let Some(now) = history.sheared() else { return };
-        let (before, stuck) = ([shear.force, shear.displacement()], shear.stick);
+        let (before, stuck) = (shear.force, shear.stick);
         let (mut force, mut motion, mut lost, mut begun, mut from) = (0.0, 0.0, 0.0, 0.0, edge);
         // of the levels above, ∫ θ dl and ∫ θ dδ: in the mean of the step, and while those below begin to slip
         let mut above = [[0.0; 2]; 2];
@@ -53,38 +68,23 @@ impl Levels {
             (force, motion) = (force + traction * width, motion + shear.trial[k] * depth);
             groups[k].shear = traction;
         }
+        let taken = taken(history, groups, shear);
         if let Demand::Force(wanted) = along {
             force = wanted;
         } else {
             shear.slid += left;
         }
         (shear.force, shear.motion) = (force, motion);
-        let mean = 0.5 * (before[0] + force);
-        shear.work += mean * (shear.displacement() - before[1]);
         // it slides under what it carries then, not under what it carried while it stuck
-        let sliding = if stuck > 0.0 && !shear.whole { force } else { mean };
+        let sliding = if stuck > 0.0 && !shear.whole { force } else { 0.5 * (before + force) };
         lost += if let Demand::Force(_) = along { 0.0 } else { sliding * left };
         let bottom = stick.checked_sub(1).map_or(0.0, |k| groups[k].top);
-        shear.lost += lost + begun * travelled(level - bottom, edge - from, from - bottom);
+        lost += begun * travelled(level - bottom, edge - from, from - bottom);
+        (shear.lost, shear.work) = (shear.lost + lost, shear.work + taken + lost);
         let now = [shear.displacement(), force, shear.work];
         shear.maxima.iter_mut().zip(now).for_each(|(most, now)| *most = most.max(now.abs()));
         let stick = if share.abs() < 1.0 && stick == met.start { met.end } else { stick };
         shear.stick = stick.checked_sub(1).map_or(0.0, |k| groups[k].top);
-    }
-
-    /// What has crept of the work along the surface.
-    pub(in crate::states) fn crept_along(&self) -> f64 {
-        self.shear.as_ref().map_or(0.0, |shear| shear.work - shear.lost - self.stored_along())
-    }
-
-    /// In a step of no time nothing creeps: its work is what bodies store and lose by slip, also where contacts grow or
-    /// shrink in it, so that the force is no line in the displacement.
-    pub(in crate::states) fn work_at_once(&mut self, crept: f64) {
-        let stored = self.stored_along();
-        if let Some(shear) = &mut self.shear {
-            shear.work = crept + stored + shear.lost;
-            shear.maxima[2] = shear.maxima[2].max(shear.work.abs());
-        }
     }
 
     /// How far apart two outcomes of one step are along the surface: ∫ |δU| dδ, the most that their displacements can
@@ -113,7 +113,8 @@ impl Levels {
     /// same sense, and nothing brings back a loss.
     pub(in crate::states) fn extrapolate_loss(&mut self, [before, whole]: [&Levels; 2], share: f64) {
         if let (Some(shear), Some(before), Some(whole)) = (&mut self.shear, &before.shear, &whole.shear) {
-            shear.lost = f64::max(before.lost, shear.lost + share * (shear.lost - whole.lost));
+            let lost = f64::max(before.lost, shear.lost + share * (shear.lost - whole.lost));
+            (shear.lost, shear.work) = (lost, shear.work + lost - shear.lost);
         }
     }
 }

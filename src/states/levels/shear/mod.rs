@@ -34,6 +34,9 @@ pub(in crate::states) struct Shear {
     /// θ of each group at its end.
     #[cfg_attr(feature = "checkpoint", serde(skip))]
     tractions: Vec<f64>,
+    /// θ of each group in its mean.
+    #[cfg_attr(feature = "checkpoint", serde(skip))]
+    mean: Vec<f64>,
     /// ∫ θ dl \[N\].
     pub(in crate::states) force: f64,
     /// ∫ U dδ \[m\].
@@ -49,7 +52,7 @@ pub(in crate::states) struct Shear {
     pub(in crate::states) lost: f64,
 }
 
-clone_by_fields! { Shear { whole, trial, tractions, force, motion, slid, stick, maxima, work, lost } }
+clone_by_fields! { Shear { whole, trial, tractions, mean, force, motion, slid, stick, maxima, work, lost } }
 
 impl Shear {
     #[cfg(feature = "checkpoint")]
@@ -135,8 +138,8 @@ impl Levels {
 
     pub(super) fn make_room_for_shear(&mut self) {
         self.history.shear(GROUPS);
-        let [trial, tractions] = [(); 2].map(|()| Vec::with_capacity(GROUPS));
-        self.shear = Some(Shear { trial, tractions, ..Shear::default() });
+        let [trial, tractions, mean] = [(); 3].map(|()| Vec::with_capacity(GROUPS));
+        self.shear = Some(Shear { trial, tractions, mean, ..Shear::default() });
     }
 
     /// Lets levels that are met slip from the start of the step on.
