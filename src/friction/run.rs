@@ -25,6 +25,8 @@ const SOLVER_SHARE: f64 = 1e-4;
 /// Cells are met one by one, and how far each has slipped by then does not converge with the step: differences below
 /// this part of the tolerance are not resolved.
 const UNRESOLVED: f64 = 2e-3;
+/// Loss by slip, over the largest motion and force so far, below which next to nothing slips.
+const HARDLY: f64 = 0.1;
 /// The most accurate solver of a run.
 const MOST_ACCURATE: f64 = 1e-11;
 
@@ -33,8 +35,9 @@ impl FrictionContact {
     /// jumps of all histories; where pressure and shear jump at once, by oblique loading. Without it no force acts
     /// along the surface of a body that does not turn.
     ///
-    /// Adaptive steps keep the error of motions and forces along the surface, relative to their maximum so far, within
-    /// the tolerance besides that of approach and force, and solve to 1e-4 of it. More than friction carries ends the
+    /// Adaptive steps keep the error of motions and forces along the surface, relative to their maximum so far, and of the
+    /// loss by slip within the tolerance besides that of approach and force, and solve to 1e-4 of it. The loss counts
+    /// as at least a tenth of the largest motion times the largest force. More than friction carries ends the
     /// run with [`FrictionError::Slides`]; [`FrictionContact::load_share`] tells before.
     ///
     /// ```
@@ -107,15 +110,17 @@ impl Contact for FrictionContact {
         Some(self.normal().fields())
     }
 
-    /// Of approach and force, and as large a part of them as motion and force along the surface are off by, over their
-    /// maximum so far (angles times the square root of the contact area, torques over it).
+    /// Of approach and force, and as large a part of them as motion, force and loss along the surface are off by, over
+    /// their maximum so far (angles times the square root of the contact area, torques over it).
     fn difference(&self, other: &Self) -> [f64; 2] {
         let off = |one: [f64; 3], other: [f64; 3]| [0, 1, 2].map(|k| one[k] - other[k]);
         let arm = self.contact_area().sqrt();
         let motion = size(off(self.motion(), other.motion()), arm);
         let force = size(off(FrictionContact::force(self), FrictionContact::force(other)), arm.recip());
-        let parts = [motion, force].into_iter().zip(self.state.largest);
-        let part = parts.map(|(off, largest)| if off > 0.0 { off / largest } else { 0.0 }).fold(0.0, f64::max);
+        let ([_, lost], [far, most]) = (self.state.work, self.state.largest);
+        let parts = [(motion, far), (force, most), ((lost - other.state.work[1]).abs(), lost.max(HARDLY * far * most))];
+        let part =
+            parts.into_iter().map(|(off, largest)| if off > 0.0 { off / largest } else { 0.0 }).fold(0.0, f64::max);
         let part = (part - self.unresolved).max(0.0);
         let sizes = [[self.approach(), other.approach()], [Contact::force(self), Contact::force(other)]];
         sizes.map(|[own, other]| (own - other).abs() + part * own.abs())

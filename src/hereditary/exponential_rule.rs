@@ -66,7 +66,7 @@ pub(crate) struct ExponentialRule {
     #[cfg_attr(feature = "checkpoint", serde(skip))]
     accepted: u32,
     #[cfg_attr(feature = "checkpoint", serde(skip))]
-    relaxed: RelaxedSteps,
+    pub(super) relaxed: RelaxedSteps,
 }
 
 clone_by_fields! { ExponentialRule {
@@ -194,21 +194,6 @@ impl ExponentialRule {
     /// η/Δ of the step predicted last.
     pub(super) fn viscous(&self) -> f64 {
         if self.has_dashpot() { self.relaxation.viscosity() / self.tried.dt } else { 0.0 }
-    }
-
-    /// The same, of a step that takes time: nothing moves in a jump of a body that has a dashpot alone.
-    #[cfg(any(feature = "friction", feature = "states"))]
-    pub(super) fn viscous_of_time(&self) -> f64 {
-        if self.tried.dt > 0.0 { self.viscous() } else { 0.0 }
-    }
-
-    /// Of q_i in the mean of the step predicted last: the parts of its start, and of a change of u that is linear on it,
-    /// φ₁ and E_i φ₂.
-    #[cfg(any(feature = "friction", feature = "states"))]
-    pub(super) fn mean_of(&mut self, branch: usize) -> [f64; 2] {
-        let (modulus, tau) = self.relaxation.terms()[branch];
-        let [first, second, ..] = self.relaxed.of(branch, self.tried.dt / tau).phi;
-        [first, modulus * second]
     }
 
     /// Of each relaxation time, in the step predicted last: the part of q_i that is left of it, its response to a

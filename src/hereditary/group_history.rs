@@ -57,7 +57,9 @@ impl Past {
     /// last, if U is linear on it and ends at `now`: q_i relaxes from its start as e^(−s/τ_i).
     fn mean_stress(&self, rule: &mut ExponentialRule, now: &[f64], mean: &mut Vec<f64>) {
         let [displacements, _, _, stresses @ ..] = &self.columns[..] else { return };
-        let mut of_change = 0.5 * rule.equilibrium() + rule.viscous_of_time();
+        let mut of_change = 0.5 * rule.equilibrium();
+        // nothing moves in a jump of a body that has a dashpot alone
+        of_change += if rule.tried.dt > 0.0 { rule.viscous() } else { 0.0 };
         mean.clear();
         mean.resize(now.len(), 0.0);
         for (first, columns) in (0..).step_by(3).zip(stresses.chunks(3)) {
@@ -335,6 +337,14 @@ impl ExponentialRule {
             *longer += modulus;
             Some((modulus, modulus / *longer))
         })
+    }
+
+    /// Of q_i in the mean of the step predicted last: the parts of its start, and of a change of u that is linear on it,
+    /// φ₁ and E_i φ₂.
+    fn mean_of(&mut self, branch: usize) -> [f64; 2] {
+        let (modulus, tau) = self.relaxation.terms()[branch];
+        let [first, second, ..] = self.relaxed.of(branch, self.tried.dt / tau).phi;
+        [first, modulus * second]
     }
 }
 

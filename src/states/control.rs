@@ -194,6 +194,7 @@ impl Judge<StatesContact> for OnLevels {
             // of no certain order where edges move in the step: the halves err by no more than they differ from the
             // whole
             see([off[3] / OF_HALVES, 0.0], [shear.lost.max(done.max(far * most / SMALL) * along * pressed), 0.0]);
+            see([off[4], 0.0], [f64::max(done, far * most) / SMALL * along * pressed, 0.0]);
             // levels that stick keep what a step has moved them by
             let time = end - record.corner;
             let lasting = |demand| halves.levels.lasting(&halves.states, demand, time / half);

@@ -1,8 +1,6 @@
 //! How far a misfit may be trusted.
 
-use crate::error::Result;
 use crate::fit::Fit;
-use crate::identification::Identification;
 use crate::noise::Noise;
 use crate::parameters::Nuisance;
 use crate::statistics::scatter;
@@ -40,17 +38,16 @@ impl Fit {
     ///
     /// # Errors
     /// If a watch ends it.
-    pub fn variants(&self) -> Result<Vec<Variant>> {
-        let [first, last] = self.problem.window;
+    pub fn variants(&self) -> crate::error::Result<Vec<Variant>> {
+        let ([first, last], base) = (self.problem.window, &self.identification);
         let times = [first, (first * last).sqrt(), last];
-        let base = &self.identification;
         let all = [
             ("drift", base.clone().drift(Nuisance::Fitted)),
             ("tilt", base.clone().tilt(Nuisance::Fitted)),
             ("correlated noise", base.clone().noise(Noise::Autoregressive)),
             ("no outliers", base.clone().robust()),
         ];
-        let variant = |(assumption, identification): (&'static str, Identification)| {
+        let variant = |(assumption, identification): (&'static str, crate::identification::Identification)| {
             let fit = identification.fit(&self.curves).ok()?;
             let ratios = times.map(|time| fit.modulus(time) / self.modulus(time));
             Some(Variant { assumption, times, ratios, aicc_difference: fit.aicc() - self.aicc() })

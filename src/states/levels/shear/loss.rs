@@ -88,8 +88,8 @@ impl Levels {
     }
 
     /// How far apart two outcomes of one step are along the surface: ∫ |δU| dδ, the most that their displacements can
-    /// ever differ by; the displacements; the forces; and what slip has dissipated.
-    pub(in crate::states) fn shear_distance(&self, other: &Levels) -> Option<[f64; 4]> {
+    /// ever differ by; the displacements; the forces; what slip has dissipated; and the work.
+    pub(in crate::states) fn shear_distance(&self, other: &Levels) -> Option<[f64; 5]> {
         let (one, two) = (self.shear.as_ref()?, other.shear.as_ref()?);
         let (own, others) = (self.history.sheared()?, other.history.sheared()?);
         let (mut far, mut k, mut lower) = (0.0, 0, 0.0);
@@ -105,8 +105,10 @@ impl Levels {
                 k += 1;
             }
         }
-        let off = [one.displacement() - two.displacement(), one.force - two.force, one.lost - two.lost].map(f64::abs);
-        Some([far + (one.slid - two.slid).abs(), off[0], off[1], off[2]])
+        let numbers = |shear: &Shear| [shear.displacement(), shear.force, shear.lost, shear.work];
+        let (own, others) = (numbers(one), numbers(two));
+        let [motion, force, lost, work] = std::array::from_fn(|k| (own[k] - others[k]).abs());
+        Some([far + (one.slid - two.slid).abs(), motion, force, lost, work])
     }
 
     /// Continues the loss of a step in halves by so much of its difference to that of the whole: every step errs in the
