@@ -312,8 +312,8 @@ impl FrictionContact {
         self.state.force
     }
 
-    /// Where the work along the surface went. Of a jump it is exact as far as each cell slips in one direction. What the
-    /// bodies store takes a convolution for each of their springs.
+    /// Where the work along the surface went. Of a jump it is exact as far as each cell slips in one direction. What
+    /// the bodies store takes a convolution for each of their springs.
     pub fn lateral_work(&self) -> LateralWork {
         let [work, slip] = self.state.work;
         LateralWork::new(work, slip, self.stored())

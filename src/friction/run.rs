@@ -15,6 +15,7 @@ use crate::friction::report::Outcome;
 use crate::load::{Load, LoadHistory};
 use crate::rheology::TemperatureHistory;
 use crate::run::control::Control;
+use crate::run::doubled::judge::SMALL;
 #[cfg(feature = "checkpoint")]
 use crate::run::doubled::{SavedRun, plain::Plain};
 use crate::run::progress::Progress;
@@ -25,8 +26,6 @@ const SOLVER_SHARE: f64 = 1e-4;
 /// Cells are met one by one, and how far each has slipped by then does not converge with the step: differences below
 /// this part of the tolerance are not resolved.
 const UNRESOLVED: f64 = 2e-3;
-/// Loss by slip, over the largest motion and force so far, below which next to nothing slips.
-const HARDLY: f64 = 0.1;
 /// The most accurate solver of a run.
 const MOST_ACCURATE: f64 = 1e-11;
 
@@ -35,9 +34,9 @@ impl FrictionContact {
     /// jumps of all histories; where pressure and shear jump at once, by oblique loading. Without it no force acts
     /// along the surface of a body that does not turn.
     ///
-    /// Adaptive steps keep the error of motions and forces along the surface, relative to their maximum so far, and of the
-    /// loss by slip within the tolerance besides that of approach and force, and solve to 1e-4 of it. The loss counts
-    /// as at least a tenth of the largest motion times the largest force. More than friction carries ends the
+    /// Adaptive steps keep the error of motions and forces along the surface, relative to their maximum so far, and of
+    /// the loss by slip within the tolerance besides that of approach and force, and solve to 1e-4 of it. The loss
+    /// counts as at least a tenth of the largest motion times the largest force. More than friction carries ends the
     /// run with [`FrictionError::Slides`]; [`FrictionContact::load_share`] tells before.
     ///
     /// ```
@@ -118,7 +117,7 @@ impl Contact for FrictionContact {
         let motion = size(off(self.motion(), other.motion()), arm);
         let force = size(off(FrictionContact::force(self), FrictionContact::force(other)), arm.recip());
         let ([_, lost], [far, most]) = (self.state.work, self.state.largest);
-        let parts = [(motion, far), (force, most), ((lost - other.state.work[1]).abs(), lost.max(HARDLY * far * most))];
+        let parts = [(motion, far), (force, most), ((lost - other.state.work[1]).abs(), lost.max(SMALL * far * most))];
         let part =
             parts.into_iter().map(|(off, largest)| if off > 0.0 { off / largest } else { 0.0 }).fold(0.0, f64::max);
         let part = (part - self.unresolved).max(0.0);

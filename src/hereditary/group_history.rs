@@ -339,8 +339,8 @@ impl ExponentialRule {
         })
     }
 
-    /// Of q_i in the mean of the step predicted last: the parts of its start, and of a change of u that is linear on it,
-    /// φ₁ and E_i φ₂.
+    /// Of q_i in the mean of the step predicted last: the parts of its start, and of a change of u that is linear on
+    /// it, φ₁ and E_i φ₂.
     fn mean_of(&mut self, branch: usize) -> [f64; 2] {
         let (modulus, tau) = self.relaxation.terms()[branch];
         let [first, second, ..] = self.relaxed.of(branch, self.tried.dt / tau).phi;
