@@ -25,7 +25,6 @@ mod report;
 mod run;
 #[cfg(feature = "checkpoint")]
 mod saved;
-mod secant;
 mod sliding_limit;
 mod snapshot;
 mod state;

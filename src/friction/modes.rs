@@ -70,15 +70,16 @@ impl Modes {
         [0, 1, 2].map(|k| if self.is_driven[k] { [self.answers[k][i], self.answers[k][n + i]] } else { [0.0; 2] })
     }
 
-    /// How much of a motion the loads feel where cells take part in it for a share of the step: (BᵀB)⁻¹ Bᵀ a B, by
-    /// columns.
-    pub(super) fn felt(&self, entered: &[f64]) -> [[f64; 3]; 3] {
+    /// The motion that takes B ν where cells take part in it for a share of the step, as the loads feel it:
+    /// (Bᵀ a B) Δd = BᵀB ν.
+    pub(super) fn motion(&self, entered: &[f64], wanted: [f64; 3]) -> [f64; 3] {
         let n = entered.len();
-        let met = self.products(|a, b| {
+        let felt = self.products(|a, b| {
             let (one, other) = (&self.fields[a], &self.fields[b]);
             (0..n).map(|i| entered[i] * (one[i] * other[i] + one[n + i] * other[n + i])).sum()
         });
-        [0, 1, 2].map(|b| linalg::solve_normal_equations(&self.gram, [0, 1, 2].map(|a| met[a][b]), 1e-13))
+        let right = self.gram.map(|row| (0..3).map(|k| row[k] * wanted[k]).sum());
+        linalg::solve_normal_equations(&felt, right, 1e-13)
     }
 }
 

@@ -3,7 +3,6 @@
 use crate::friction::kernel::TangentialKernel;
 use crate::friction::modes::{Modes, add, inner};
 use crate::friction::problem::{Cell, Problem, Solution, dot};
-use crate::friction::secant::Secant;
 use crate::linalg;
 
 /// Buffers of the solver.
@@ -24,7 +23,6 @@ pub(super) struct Work {
     began: Vec<bool>,
     /// Whether other cells slip than at the start of that step.
     changed: bool,
-    secant: Option<Secant>,
     /// Whether loads are met after a Newton step, too.
     carries: bool,
     /// Of the search by motion: the drift, and where it comes from.
@@ -120,7 +118,7 @@ impl Solution {
             problem.touching().fold((0.0_f64, 0), |(r, count), i| (r.max(problem.bound[i]), count + 1));
         let least = NEGLIGIBLE * problem.compliance * largest * problem.side * f64::from(count).sqrt();
         let mut outcome = Outcome::default();
-        (work.secant, work.changed) = (None, false);
+        work.changed = false;
         work.began.fill(false);
         work.modes.are_known = false;
         for iteration in 0..=MOST_STEPS {
@@ -324,15 +322,8 @@ impl Solution {
                 break;
             }
         }
-        // the step leaves −B ν of the gradient. A further motion takes a B Δd of it, which is B P Δd as far as the loads
-        // feel it: by BᵀB at first, then as the steps show (Broyden), while the same cells slip
-        let left = multipliers.map(|value| -value);
-        let mut secant = work.secant.unwrap_or_else(|| Secant::new(modes.felt(problem.entered)));
-        if !work.changed && work.secant.is_some() {
-            secant.learn(left);
-        }
-        work.change = secant.motion(left);
-        (work.secant, work.changed) = (Some(secant), false);
+        // the step leaves −B ν of the gradient, and a further motion takes a B Δd of it
+        (work.change, work.changed) = (modes.motion(problem.entered, multipliers.map(|value| -value)), false);
         true
     }
 
