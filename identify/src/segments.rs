@@ -40,7 +40,7 @@ impl Curve {
     pub fn within(&self, times: Range<f64>) -> Result<Curve> {
         let all = self.experiment.protocol.times();
         let [from, to] = [times.start, times.end].map(|end| all.partition_point(|time| *time < end));
-        self.samples(from..to)
+        self.samples(if times.start.is_nan() { 0..0 } else { from..to })
     }
 
     /// The curve until the drive first comes near its maximum value.

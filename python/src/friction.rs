@@ -268,8 +268,8 @@ impl FrictionContact {
         slf.contact.sticks().into_pyarray(py).reshape(slf.contact.normal().grid().cells())
     }
 
-    /// Where the work along the surface went since the contact was made [J]: "work" = "slip" + "stored" + "creep". Of a jump it is exact
-    /// as far as each cell slips in one direction; in time the errors of the work are of second order.
+    /// Where the work along the surface went since the contact was made [J]: "work" = "slip" + "stored" + "creep". Of a jump under a
+    /// constant normal load it is exact as far as each cell slips in one direction; in time the errors of the work are of second order.
     #[getter]
     fn lateral_work<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let contact = &slf.contact;

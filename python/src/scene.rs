@@ -28,11 +28,12 @@ fn setting(settings: Settings, name: &str, value: &Object<'_>) -> PyResult<Optio
 }
 
 /// The settings of keywords, each of which must be one.
-pub fn settings(base: Settings, given: &Dict<'_>) -> PyResult<Settings> {
+pub fn settings(base: Settings, given: &Dict<'_>, known: &str) -> PyResult<Settings> {
     given.iter().try_fold(base, |settings, (name, value)| {
         let name: String = name.extract()?;
+        let is_known = known.split_whitespace().any(|known| known == name);
         let changed = setting(settings, &name, &value).map_err(|error| noted(error, &name, &value))?;
-        changed.ok_or_else(|| unexpected("the contact problem", &name, OPTIONS))
+        changed.filter(|_| is_known).ok_or_else(|| unexpected("the contact problem", &name, known))
     })
 }
 
@@ -44,8 +45,11 @@ fn noted(error: PyErr, name: &str, value: &Object<'_>) -> PyErr {
 }
 
 /// The keywords of a contact.
-const OPTIONS: &str = "counter_body kernel attraction temperature times tolerance max_iterations time_rule edge series_tolerance \
+pub const OPTIONS: &str = "counter_body kernel attraction temperature times tolerance max_iterations time_rule edge series_tolerance \
     symmetry window frame";
+
+/// Those of a contact that does not creep.
+pub const ELASTIC: &str = "tolerance max_iterations edge symmetry window";
 
 /// The error of a keyword that `of` does not have: with the nearest one.
 pub fn unexpected(of: &str, name: &str, known: &str) -> PyErr {

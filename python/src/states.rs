@@ -6,7 +6,7 @@ use viscocontact::run::{Contact, Stepping};
 use viscocontact::states as st;
 use viscocontact::{self as vc};
 
-use crate::arrays::table;
+use crate::arrays::{check, table};
 use crate::held::Led;
 use crate::loads::{Tilts, tilts};
 use crate::prelude::*;
@@ -148,7 +148,7 @@ impl ElasticStates {
         let sweep = if_given(sweep, keep_pressures.then_some(()), |sweep, ()| sweep.keep_pressures());
         let sweep = if_given(sweep, max_states, |sweep, most| sweep.max_states(most.0));
         let base = Settings::default().with_tolerance(1e-8);
-        let settings = settings.map(|given| self::settings(base, &given)).transpose()?;
+        let settings = settings.map(|given| self::settings(base, &given, crate::scene::OPTIONS)).transpose()?;
         let sweep = if_given(sweep, settings, st::Sweep::settings);
         let mut listener = Listener::new(progress);
         let states = free(py, || sweep.run_with(reach, |states| listener.goes_on((states.len(),))));
@@ -199,6 +199,7 @@ impl ElasticStates {
 
     /// Conductance of the contact at levels [m²] of two conductors of `resistivities`, electrical [Ω m] in S, or thermal [m K/W] in W/K.
     fn conductance<'py>(&self, level: &Object<'py>, resistivities: [f64; 2]) -> PyResult<Object<'py>> {
+        resistivities.into_iter().try_for_each(|of| check("resistivities", of, FROM_ZERO))?;
         mapped("level", level, FROM_ZERO, |level| self.states.conductance(level, resistivities), never)
     }
 

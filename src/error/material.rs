@@ -57,7 +57,7 @@ pub enum MaterialError {
     /// a greater error, or shorten the [times](crate::contact::Builder::times) of the fit.
     #[error(
         "no exponential series was found within {tolerance:e}: the error of the best is {misfit:.1e}, at {} s; \
-        raise the tolerance (Settings::series_tolerance) to at least that, or fit over shorter times",
+        raise the tolerance (Settings::series_tolerance) to at least that, 0.1 at most, or fit over shorter times",
         rounded(*.at, 3)
     )]
     PoorFit {

@@ -18,7 +18,7 @@ use crate::friction::report::{FrictionReport, Outcome};
 use crate::friction::state::State;
 use crate::hereditary::Interpolant;
 use crate::load::Load;
-use crate::load::lateral_work::LateralWork;
+use crate::load::along::LateralWork;
 use crate::parallel::in_pool;
 use crate::run::doubled::SavedRun;
 use crate::run::doubled::plain::Plain;
@@ -118,8 +118,9 @@ impl FrictionContact {
     }
 
     /// Advances by `dt` \[s\] to a load, and to what acts along the surface; `dt` = 0 is a jump. What a step meets
-    /// slips from its entry on: a step in which both loads rise together is oblique loading, all of which sticks if
-    /// Q < f P. To press first and then to shear takes two steps, of no time if it happens at once.
+    /// slips from its entry on: a step in which both loads rise together is oblique loading, which sticks if Q < f P:
+    /// all of it at ν = 0 and in line contact, else as steps grow shorter. To press first and then to shear takes two
+    /// steps, of no time if it happens at once.
     ///
     /// # Errors
     /// As [`ViscoelasticContact::step`]; [`FrictionError::NotConverged`]; if a number is not finite, or the limit returns
@@ -312,8 +313,8 @@ impl FrictionContact {
         self.state.force
     }
 
-    /// Where the work along the surface went. Of a jump it is exact as far as each cell slips in one direction. What
-    /// the bodies store takes a convolution for each of their springs.
+    /// Where the work along the surface went. Of a jump under a constant normal load it is exact as far as each cell
+    /// slips in one direction; where the normal load jumps too, the loss is that of one step. What the bodies store takes a convolution for each of their springs.
     pub fn lateral_work(&self) -> LateralWork {
         let [work, slip] = self.state.work;
         LateralWork::new(work, slip, self.stored())

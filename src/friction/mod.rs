@@ -37,4 +37,4 @@ pub use report::{FrictionReport, Outcome};
 pub use snapshot::FrictionSnapshot;
 
 pub use crate::error::FrictionError;
-pub use crate::load::lateral_work::LateralWork;
+pub use crate::load::along::LateralWork;

@@ -49,7 +49,7 @@ impl Work {
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Outcome {
     pub(super) iterations: usize,
-    /// Max of the residuals of stick and slip over the largest displacement.
+    /// Max of the residuals of stick and slip over the largest displacement, and of those of the loads.
     pub(super) residual: f64,
     pub(super) is_solved: bool,
 }
@@ -132,8 +132,8 @@ impl Solution {
             let gaps = problem.gaps(&self.traction);
             let balance = problem.balance(gaps);
             let residual = self.judge(problem, work) / scale;
-            outcome =
-                Outcome { iterations: iteration, residual, is_solved: residual <= tolerance && balance <= tolerance };
+            let is_solved = residual <= tolerance && balance <= tolerance;
+            outcome = Outcome { iterations: iteration, residual: residual.max(balance), is_solved };
             if outcome.is_solved || iteration == MOST_STEPS || !residual.is_finite() || problem.is_cancelled() {
                 break;
             }

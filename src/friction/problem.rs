@@ -117,7 +117,8 @@ impl Problem<'_> {
             let size = new[0].hypot(new[1]);
             let lost = match (now.cells[i], before.cells[i]) {
                 (Cell::Stick, _) => 0.0,
-                (Cell::Apart, _) => -0.5 * dot(g, old),
+                // nothing is gained by slip, however far the body moves while a cell parts
+                (Cell::Apart, _) => (-0.5 * dot(g, old)).max(0.0),
                 (Cell::Slip, Cell::Stick) => size * g[0].hypot(g[1]),
                 (Cell::Slip, _) => 0.5 * (old[0].hypot(old[1]) + size) * g[0].hypot(g[1]),
             };

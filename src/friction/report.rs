@@ -31,6 +31,6 @@ pub struct FrictionReport {
     /// Work along the surface, in convolutions of a pressure on the whole grid
     /// ([`InfluenceKernel::convolve`](crate::InfluenceKernel::convolve)).
     pub convolution_equivalents: f64,
-    /// The largest slip of a cell that sticks, over the largest displacement.
+    /// The largest slip of a cell that sticks, over the largest displacement, and what is missing of a load, over it.
     pub residual: f64,
 }

@@ -12,11 +12,11 @@
 //! | [`Sinusoid`] | oscillation between two loads |
 //! | [`FnHistory`] | any closure of time |
 
+#[cfg(feature = "contacts")]
+pub(crate) mod along;
 mod effect;
 mod function;
 mod history;
-#[cfg(feature = "contacts")]
-pub(crate) mod lateral_work;
 #[cfg(feature = "laws")]
 pub mod laws;
 mod periodic;

@@ -376,9 +376,10 @@ impl ElasticStates {
 
     /// Conductance of the contact of two conductors of resistivities ρ₁ and ρ₂, electrical \[Ω m → S\] or thermal \[m
     /// K/W → W/K\]: 2 S/(E* (ρ₁ + ρ₂)), with S/E* the stiffness over the modulus (J. R. Barber, Proc. R. Soc. A 459,
-    /// 2003). Exact for half-spaces that conduct through the contact alone.
+    /// 2003). Exact for half-spaces that conduct through the contact alone. NaN where a resistivity is below 0.
     pub fn conductance(&self, level: f64, resistivities: [f64; 2]) -> f64 {
-        2.0 * self.stiffness(level) / resistivities.iter().sum::<f64>()
+        let of = |resistivity: f64| if resistivity >= 0.0 { resistivity } else { f64::NAN };
+        2.0 * self.stiffness(level) / resistivities.map(of).iter().sum::<f64>()
     }
 }
 

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use crate::contact::StepReport;
-use crate::error::{Result, StatesError, within};
+use crate::error::{Error, Result, StatesError, within};
 use crate::hereditary::Interpolant;
 use crate::kernel::HalfSpace;
-use crate::load::lateral_work::LateralWork;
+use crate::load::along::LateralWork;
 use crate::load::{Load, LoadHistory};
 use crate::rheology::Material;
 use crate::states::contact::StatesContact;
@@ -165,12 +165,12 @@ impl StatesContact {
             return if given.is_some() { Err(StatesError::NoFriction.into()) } else { Ok(None) };
         };
         let load = match (given, &friction.history) {
-            (Some(load), _) => load.validate().map(|()| load)?,
-            (None, None) => Load::force(0.0),
-            (None, Some(history)) if dt > 0.0 => history.checked_before(time, true)?,
-            (None, Some(history)) => history.checked_at(time, true)?,
+            (Some(load), _) => load.validate().map(|()| load),
+            (None, None) => Ok(Load::force(0.0)),
+            (None, Some(history)) if dt > 0.0 => history.checked_before(time, true),
+            (None, Some(history)) => history.checked_at(time, true),
         };
-        friction.demand(load).map(Some)
+        friction.demand(load.map_err(Error::along)?).map(Some)
     }
 
     /// What the levels have along the surface, times the coefficient, if there is friction.

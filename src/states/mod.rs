@@ -67,7 +67,7 @@ mod superposed;
 mod sweep;
 
 pub use crate::error::StatesError;
-pub use crate::load::lateral_work::LateralWork;
+pub use crate::load::along::LateralWork;
 pub use contact::StatesContact;
 pub use curve::{ElasticState, ElasticStates};
 #[cfg(feature = "npy")]

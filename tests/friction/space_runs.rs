@@ -2,6 +2,7 @@
 
 use viscocontact::friction::{Coulomb, FrictionContact, FrictionError, Outcome, ShearHistory, ShearLoad};
 use viscocontact::prelude::*;
+use viscocontact::states::{ElasticStates, StatesContact};
 
 use super::dense::relaxation;
 use super::space::pair;
@@ -135,6 +136,93 @@ fn runs_follow_jumps_and_say_when_bodies_slide() {
         "{error}"
     );
     assert!(run.contact().load_share() > 0.99);
+}
+
+/// Motions of creeping bodies near the limit grow beyond all accuracy: the error is that of the load all the same.
+#[test]
+fn adaptive_runs_of_creeping_bodies_say_that_they_slide() {
+    let maxwell = || GeneralizedMaxwell::new(0.0, &[(1.0e6, 1.0)]).unwrap();
+    for (nu, creeps, tolerance) in [(0.5, false, 1e-2), (0.5, true, 1e-2), (0.5, false, 1e-3), (0.3, false, 1e-2)] {
+        let zener = || Zener::with_time(1.0e6, 1.0e6, 1.0).unwrap();
+        let material = match (nu, creeps) {
+            (_, true) => Material::incompressible(maxwell()),
+            (0.5, _) => Material::incompressible(zener()),
+            _ => {
+                let body = || Material::constant_poisson(zener(), nu).unwrap();
+                body().against(body())
+            }
+        };
+        let ball = Sphere::new(10.0e-3).unwrap();
+        let builder =
+            ViscoelasticContact::builder(Grid::square(16, 4.4e-3).unwrap()).geometry(&ball).material(material);
+        let still = StepLoad::new(Load::force(0.0)).unwrap();
+        let shear = ShearHistory::new(Ramp::new(Load::force(0.0), Load::force(1.0), 1.0).unwrap(), still);
+        let contact = FrictionContact::new(builder, Coulomb::new(0.5).unwrap()).unwrap().sheared_by(shear);
+        let pressed = StepLoad::new(Load::force(1.0)).unwrap();
+        let mut run = contact.into_follow(pressed, Stepping::adaptive(tolerance), 4.0);
+        let error = loop {
+            match run.next_step() {
+                Ok(step) => assert!(step.is_some()),
+                Err(error) => break error,
+            }
+        };
+        println!("{nu} {creeps} {tolerance:.0e}: {} steps, {error}", run.progress().steps);
+        let Error::Friction(FrictionError::Slides { time, direction, .. }) = error else { panic!("{error}") };
+        assert!((0.5..0.5 * (1.0 + 4.0 * tolerance)).contains(&time) && (direction[0] - 1.0).abs() < 1e-6);
+        assert!(run.contact().load_share() > 1.0 - 4.0 * tolerance);
+    }
+}
+
+/// What slip has dissipated is never given back, however far a body is moved in the step in which it is lifted.
+#[test]
+fn slip_gives_nothing_back() {
+    for back in [0.0, 1e-6, -3e-6, 2e-5] {
+        let material = Material::incompressible(Zener::with_time(1.0e6, 1.0e6, 1.0).unwrap());
+        let builder = ViscoelasticContact::builder(Grid::square(24, 4.0e-3).unwrap())
+            .geometry(&Sphere::new(10.0e-3).unwrap())
+            .material(material);
+        let mut contact = FrictionContact::new(builder, Coulomb::new(0.5).unwrap()).unwrap();
+        let mut last = 0.0;
+        for (dt, force, shear) in [
+            (0.0, 1.0, ShearLoad::force([0.0; 2])),
+            (0.1, 1.0, ShearLoad::force([0.3, 0.0])),
+            (0.1, 0.0, ShearLoad::motion([back, 0.0])),
+        ] {
+            assert!(matches!(contact.step(dt, Load::force(force), shear).unwrap(), Outcome::Holds(_)));
+            let slip = contact.lateral_work().slip;
+            assert!(slip >= last, "{back}: {last} {slip}");
+            last = slip;
+        }
+        assert!(last > 1e-7);
+    }
+}
+
+#[test]
+fn loads_along_the_surface_have_their_names() {
+    let material = || Material::incompressible(Zener::with_time(1.0e6, 1.0e6, 1.0).unwrap());
+    let nothing = || FnHistory::new(|t| Load::force(if t > 0.05 { f64::NAN } else { 0.0 }));
+    let builder = ViscoelasticContact::builder(Grid::square(16, 4.0e-3).unwrap())
+        .geometry(&Sphere::new(10.0e-3).unwrap())
+        .material(material());
+    let still = StepLoad::new(Load::force(0.0)).unwrap();
+    let contact = FrictionContact::new(builder, Coulomb::new(0.5).unwrap()).unwrap();
+    let pressed = StepLoad::new(Load::force(1.0)).unwrap();
+    let contact = contact.sheared_by(ShearHistory::new(nothing(), still));
+    let states = || {
+        let states = ElasticStates::sphere(1.0e-2).unwrap();
+        StatesContact::new(&states, &material()).unwrap().with_estimated_friction(0.5).unwrap()
+    };
+    let sheared = states().sheared_by(nothing()).unwrap();
+    let messages = [
+        contact.into_follow(pressed, Stepping::adaptive(1e-2), 1.0).next_step().unwrap_err().to_string(),
+        states().step_sheared(0.0, Load::force(1.0), Load::force(f64::NAN)).unwrap_err().to_string(),
+        sheared.into_follow(pressed, Stepping::adaptive(1e-2), 1.0).next_step().unwrap_err().to_string(),
+    ];
+    for message in messages {
+        assert!(message.contains("force along the surface = NaN"), "{message}");
+    }
+    let message = states().step_sheared(0.0, Load::force(1.0), Load::approach(f64::NAN)).unwrap_err().to_string();
+    assert!(message.contains("displacement along the surface = NaN"), "{message}");
 }
 
 #[test]

@@ -5,7 +5,7 @@ use std::fmt::Debug;
 use std::path::Path;
 
 use crate::contact::StepReport;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::load::{Load, LoadHistory};
 use crate::run::Contact;
 #[cfg(feature = "checkpoint")]
@@ -169,7 +169,7 @@ impl<J> Record<J> {
         for (along, greatest) in contact.lateral().iter().zip(&mut self.greatest_along) {
             let looks = looks(&**along, contact.time(), self.until, true);
             let pairs = looks.map(|look| look.map(|(time, [before, at])| [(time, before.main()), (time, at.main())]));
-            let seen = pairs.collect::<Result<Vec<_>>>()?.concat();
+            let seen = pairs.collect::<Result<Vec<_>>>().map_err(Error::along)?.concat();
             self.bends_along.extend(bends(&seen));
             *greatest = seen.iter().fold(0.0, |most, (_, load)| load.abs().max(most));
         }

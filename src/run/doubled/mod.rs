@@ -100,7 +100,7 @@ impl<C: Contact, J: Judge<C>> Doubled<C, J> {
             if is_late {
                 length = length.max(shortest);
             } else if length < shortest {
-                return Err(StepError::StepTooShort { time: now, dt: length, tolerance }.into());
+                return Err(self.too_short(contact, history, Span { now, end: stop }, length, cancelled));
             }
             let mut end = if now + (1.0 + SAME_TIME) * length >= stop { stop } else { now + length };
             if self.bends(contact, history, Span { now, end }, first)? && end - now > 2.0 * shortest {
@@ -141,6 +141,27 @@ impl<C: Contact, J: Judge<C>> Doubled<C, J> {
         }
     }
 
+    /// Why no step before a stop is short enough: a load that soon becomes too much for the contact, if there is one, near
+    /// which motions grow beyond all accuracy. Soon is the tolerance of the time so far, or a few times as much.
+    fn too_short(
+        &mut self,
+        contact: &C,
+        history: &dyn LoadHistory,
+        Span { now, end }: Span,
+        dt: f64,
+        cancelled: Option<&AtomicBool>,
+    ) -> Error {
+        let (tolerance, start) = (self.record.tolerance, self.record.start);
+        for times in [1.0, 4.0, 16.0] {
+            let soon = Span { now, end: end.min(now + times * tolerance * (now - start)) };
+            match self.try_both(contact, history, soon, cancelled) {
+                Err(error) if contact.is_beyond(&error) => return error,
+                _ => {}
+            }
+        }
+        StepError::StepTooShort { time: now, dt, tolerance }.into()
+    }
+
     /// Looks at the loads within a step, the normal one of which begins with this size: whether one is off a parabola.
     fn bends(&mut self, contact: &C, history: &dyn LoadHistory, span: Span, first: f64) -> Result<bool> {
         let Doubled { record, passage, turn, .. } = self;
@@ -150,8 +171,9 @@ impl<C: Contact, J: Judge<C>> Doubled<C, J> {
         *turn = None;
         let mut is_bent_along = false;
         for (along, greatest) in contact.lateral().iter().zip(&mut record.greatest_along) {
-            let size_at = |time: f64| Ok(along.checked_before(time, true)?.main());
-            passage.look(span, along.checked_at(span.now, true)?.main(), &record.bends_along, size_at)?;
+            let size_at = |time: f64| Ok(along.checked_before(time, true).map_err(Error::along)?.main());
+            let first = along.checked_at(span.now, true).map_err(Error::along)?.main();
+            passage.look(span, first, &record.bends_along, size_at)?;
             *greatest = passage.top().abs().max(*greatest);
             let first =
                 passage.turns().map(|turn| turn.0).find(|turn| turn - span.now > AT_START * (span.end - span.now));
