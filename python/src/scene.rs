@@ -31,9 +31,11 @@ fn setting(settings: Settings, name: &str, value: &Object<'_>) -> PyResult<Optio
 pub fn settings(base: Settings, given: &Dict<'_>, known: &str) -> PyResult<Settings> {
     given.iter().try_fold(base, |settings, (name, value)| {
         let name: String = name.extract()?;
-        let is_known = known.split_whitespace().any(|known| known == name);
+        if !known.split_whitespace().any(|known| known == name) {
+            return Err(unexpected("the contact problem", &name, known));
+        }
         let changed = setting(settings, &name, &value).map_err(|error| noted(error, &name, &value))?;
-        changed.filter(|_| is_known).ok_or_else(|| unexpected("the contact problem", &name, known))
+        changed.ok_or_else(|| unexpected("the contact problem", &name, known))
     })
 }
 

@@ -314,7 +314,8 @@ impl FrictionContact {
     }
 
     /// Where the work along the surface went. Of a jump under a constant normal load it is exact as far as each cell
-    /// slips in one direction; where the normal load jumps too, the loss is that of one step. What the bodies store takes a convolution for each of their springs.
+    /// slips in one direction; where the normal load jumps too, the loss is that of one step. What the bodies store
+    /// takes a convolution for each of their springs.
     pub fn lateral_work(&self) -> LateralWork {
         let [work, slip] = self.state.work;
         LateralWork::new(work, slip, self.stored())

@@ -155,7 +155,7 @@ impl<C: Contact, J: Judge<C>> Doubled<C, J> {
         for times in [1.0, 4.0, 16.0] {
             let soon = Span { now, end: end.min(now + times * tolerance * (now - start)) };
             match self.try_both(contact, history, soon, cancelled) {
-                Err(error) if contact.is_beyond(&error) => return error,
+                Err(error) if contact.is_beyond(&error) || matches!(error, Error::Cancelled { .. }) => return error,
                 _ => {}
             }
         }
