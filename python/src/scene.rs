@@ -31,10 +31,9 @@ fn setting(settings: Settings, name: &str, value: &Object<'_>) -> PyResult<Optio
 pub fn settings(base: Settings, given: &Dict<'_>, known: &str) -> PyResult<Settings> {
     given.iter().try_fold(base, |settings, (name, value)| {
         let name: String = name.extract()?;
-        if !known.split_whitespace().any(|known| known == name) {
-            return Err(unexpected("the contact problem", &name, known));
-        }
-        let changed = setting(settings, &name, &value).map_err(|error| noted(error, &name, &value))?;
+        let changed =
+            known.split_whitespace().any(|of| of == name).then(|| setting(settings, &name, &value)).transpose();
+        let changed = changed.map_err(|error| noted(error, &name, &value))?.flatten();
         changed.ok_or_else(|| unexpected("the contact problem", &name, known))
     })
 }

@@ -238,8 +238,8 @@ impl ElasticStates {
             let rows = interruptible(py, true, &cancel, || -> vc::Result<Vec<[f64; 4]>> {
                 let contact = st::StatesContact::new(&self.states, material)?;
                 let run = contact.into_follow(Arc::clone(&history), Stepping::adaptive(tolerance), until);
-                let run = run.cancelled_by(Arc::clone(&cancel)).sample_at(&times)?;
-                let (mut run, mut rows) = (run, Vec::with_capacity(times.len()));
+                let mut run = run.cancelled_by(Arc::clone(&cancel)).sample_at(&times)?;
+                let mut rows = Vec::with_capacity(times.len());
                 while run.next_step()?.is_some() {
                     rows.extend(asked_for(&run, |sample| sample.contact().state())?);
                 }
