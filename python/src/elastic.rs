@@ -54,8 +54,7 @@ impl ElasticContact {
         for shape in &shapes {
             builder = builder.another_body(shape);
         }
-        let settings =
-            options.map(|options| settings(Settings::default(), options, crate::scene::ELASTIC)).transpose()?;
+        let settings = options.map(|options| settings(Settings::default(), options)).transpose()?;
         builder = if_given(builder, kernel, |builder, kernel| builder.kernel(Arc::clone(&kernel.kernel)));
         let builder = if_given(builder, settings, |builder, settings| builder.settings(settings));
         let contact = free(py, || builder.build()).or_raise()?;

@@ -27,14 +27,15 @@ fn setting(settings: Settings, name: &str, value: &Object<'_>) -> PyResult<Optio
     }))
 }
 
-/// The settings of keywords, each of which must be one.
-pub fn settings(base: Settings, given: &Dict<'_>, known: &str) -> PyResult<Settings> {
+/// The settings of keywords of a contact that does not creep, each of which must be one.
+pub fn settings(base: Settings, given: &Dict<'_>) -> PyResult<Settings> {
     given.iter().try_fold(base, |settings, (name, value)| {
         let name: String = name.extract()?;
-        let changed =
-            known.split_whitespace().any(|of| of == name).then(|| setting(settings, &name, &value)).transpose();
-        let changed = changed.map_err(|error| noted(error, &name, &value))?.flatten();
-        changed.ok_or_else(|| unexpected("the contact problem", &name, known))
+        let unknown = || unexpected("the contact problem", &name, ELASTIC);
+        if !ELASTIC.split_whitespace().any(|known| known == name) {
+            return Err(unknown());
+        }
+        setting(settings, &name, &value).map_err(|error| noted(error, &name, &value))?.ok_or_else(unknown)
     })
 }
 
@@ -46,11 +47,11 @@ fn noted(error: PyErr, name: &str, value: &Object<'_>) -> PyErr {
 }
 
 /// The keywords of a contact.
-pub const OPTIONS: &str = "counter_body kernel attraction temperature times tolerance max_iterations time_rule edge series_tolerance \
+const OPTIONS: &str = "counter_body kernel attraction temperature times tolerance max_iterations time_rule edge series_tolerance \
     symmetry window frame";
 
 /// Those of a contact that does not creep.
-pub const ELASTIC: &str = "tolerance max_iterations edge symmetry window";
+const ELASTIC: &str = "tolerance max_iterations edge symmetry window";
 
 /// The error of a keyword that `of` does not have: with the nearest one.
 pub fn unexpected(of: &str, name: &str, known: &str) -> PyErr {

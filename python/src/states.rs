@@ -96,7 +96,7 @@ impl ElasticStates {
     /// progress : function, optional
     ///     Called with the number of states so far; the sweep ends with these where it returns False. Ctrl-C ends it, too.
     /// settings
-    ///     Keywords of `ViscoelasticContact` from `tolerance` on.
+    ///     Keywords tolerance, max_iterations, edge, symmetry and window of `ViscoelasticContact`.
     ///
     /// >>> rubber = Material(Rheology.zener(1e6, 1e6, 1.0))
     /// >>> states = ElasticStates.sweep(Grid(32, 4e-3), Shape.sphere(10e-3), material=rubber, load=Load.force(1.0), until=10.0)
@@ -148,7 +148,7 @@ impl ElasticStates {
         let sweep = if_given(sweep, keep_pressures.then_some(()), |sweep, ()| sweep.keep_pressures());
         let sweep = if_given(sweep, max_states, |sweep, most| sweep.max_states(most.0));
         let base = Settings::default().with_tolerance(1e-8);
-        let settings = settings.map(|given| self::settings(base, &given, crate::scene::OPTIONS)).transpose()?;
+        let settings = settings.map(|given| self::settings(base, &given)).transpose()?;
         let sweep = if_given(sweep, settings, st::Sweep::settings);
         let mut listener = Listener::new(progress);
         let states = free(py, || sweep.run_with(reach, |states| listener.goes_on((states.len(),))));

@@ -161,6 +161,7 @@ ERRORS = {
     "an option": (ValueError, "\"refuse\", \"allow\"", lambda: ball(edge="fast")),
     "a keyword": (TypeError, "unexpected keyword argument 'toleranse'", lambda: ball(toleranse=1e-3)),
     "a keyword of creep": (TypeError, "unexpected keyword argument 'time_rule'", lambda: vc.ElasticContact(vc.Grid(8, 1e-3), vc.Shape.sphere(1e-2), 1e6, time_rule="linear")),
+    "a keyword of creep in a sweep": (TypeError, "unexpected keyword argument 'frame'", lambda: vc.ElasticStates.sweep(vc.Grid(8, 1e-3), vc.Shape.sphere(1e-2), level=1e-9, frame="indenter")),
     "a resistivity": (ValueError, "resistivities = -1", lambda: vc.ElasticStates.sphere(1e-2).conductance(1e-7, (-1.0, 2.0))),
     "a force along the surface": (ValueError, "force along the surface = NaN", lambda: vc.StatesContact(vc.ElasticStates.sphere(1e-2), vc.Material(vc.Rheology.zener(1e6, 1e6, 1.0)), estimated_friction=0.5).step_sheared(0.0, vc.Load.force(1.0), vc.Load.force(float("nan")))),
     "a run": (TypeError, "give dt or tolerance", lambda: ball().follow(vc.Load.force(1.0), 1.0, dt=1.0, tolerance=1.0)),

@@ -76,7 +76,7 @@ pub(super) struct StepFields {
     entered: Vec<f64>,
     drift: Vec<f64>,
     free: Vec<f64>,
-    /// What acts in the mean of the step.
+    /// Tractions, averaged over the step.
     mean: Vec<f64>,
     trial: Solution,
     work: Work,
@@ -220,7 +220,7 @@ impl FrictionContact {
         problem.gradient(parting, &work.stress, trial.motion, &mut trial.gradient);
         free.iter_mut().zip(&trial.traction).for_each(|(u, traction)| *u += compliance * traction);
         history.mean_stress(free, mean);
-        let works = problem.works(solution, trial, given, [mean, &work.stress]);
+        let works = problem.works(solution, trial, given, mean, &work.stress);
         state.work.iter_mut().zip(works).for_each(|(work, of_step)| *work += area * of_step);
         state.load_share = 1.0 / factor;
         // beside what friction could cause

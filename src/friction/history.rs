@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::error::{FrictionError, Result};
+use crate::error::{Error, FrictionError, Result};
 use crate::friction::load::{Component, ShearLoad};
 use crate::load::{Load, LoadHistory, Tilt};
 
@@ -35,7 +35,7 @@ impl ShearHistory {
     pub(super) fn load(&self, of: impl Fn(&dyn LoadHistory) -> Result<Load>) -> Result<ShearLoad> {
         let mut load = ShearLoad::force([0.0; 2]);
         for (component, history) in load.components.iter_mut().zip(&self.components) {
-            *component = match of(&**history)? {
+            *component = match of(&**history).map_err(Error::along)? {
                 Load::Force { normal: force, tilt: UPRIGHT } => Component::Force(force),
                 Load::Approach { approach: motion, tilt: UPRIGHT } => Component::Motion(motion),
                 other => return Err(FrictionError::OtherLoad(other.to_string()).into()),

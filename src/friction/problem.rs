@@ -98,16 +98,18 @@ impl Problem<'_> {
         }
     }
 
-    /// The work of a step and what slip dissipates of it, by what acts in the mean of the step and by K τ. The bodies
-    /// take up Σ mean·Δu with the change Δu = a B Δd + g of their surface: what their springs and dashpots have of it
-    /// to the last digit, for a displacement that is linear in time. A cell that slips carries its bound while it does:
-    /// it dissipates |g| times the mean of what it carried when it began and at the end.
+    /// The work of a step and the part of it that slip dissipates, from the tractions averaged over the step (`mean`)
+    /// and from `stress`, K τ. The bodies take up Σ mean·Δu with the change Δu = a B Δd + g of their surface: this is
+    /// the energy that their springs and dashpots take, to the last digit, for a displacement that is linear in time. A
+    /// cell that slips carries its bound meanwhile: it dissipates |g| times the average of its tractions at the start of
+    /// slip and at the end.
     pub(super) fn works(
         &self,
         before: &Solution,
         now: &Solution,
         given: [f64; 3],
-        [mean, stress]: [&[f64]; 2],
+        mean: &[f64],
+        stress: &[f64],
     ) -> [f64; 2] {
         let n = self.cells();
         (0..n).fold([0.0; 2], |[work, slip], i| {

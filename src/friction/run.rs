@@ -70,10 +70,8 @@ impl Contact for FrictionContact {
         let dt = time - self.normal().time();
         let shear = match &self.history_along {
             None => ShearLoad::force([0.0; 2]),
-            Some(history) if dt > 0.0 => {
-                history.load(|history| history.checked_before(time, true)).map_err(Error::along)?
-            }
-            Some(history) => history.load(|history| history.checked_at(time, true)).map_err(Error::along)?,
+            Some(history) if dt > 0.0 => history.load(|history| history.checked_before(time, true))?,
+            Some(history) => history.load(|history| history.checked_at(time, true))?,
         };
         match self.advance(&AtomicBool::new(false), dt, load, shear, self.tolerance)? {
             Outcome::Holds(report) => Ok(report.normal),

@@ -53,8 +53,8 @@ impl Past {
         }
     }
 
-    /// Writes E∞ (U + ½ ΔU) + Σ (φ₁ q_i + φ₂ E_i ΔU) + η ΔU/Δ, what acts in the mean of the step that the rule weighed
-    /// last, if U is linear on it and ends at `now`: q_i relaxes from its start as e^(−s/τ_i).
+    /// Writes the stress averaged over the step that the rule weighed last, E∞ (U + ½ ΔU) + Σ (φ₁ q_i + φ₂ E_i ΔU)
+    /// + η ΔU/Δ, if U is linear on it and ends at `now`: q_i relaxes from its start as e^(−s/τ_i).
     fn mean_stress(&self, rule: &mut ExponentialRule, now: &[f64], mean: &mut Vec<f64>) {
         let [displacements, _, _, stresses @ ..] = &self.columns[..] else { return };
         let mut of_change = 0.5 * rule.equilibrium();
@@ -176,7 +176,7 @@ impl GroupHistory {
         self.tangential.iter().for_each(|past| past.free_displacements(&self.rule, free));
     }
 
-    /// What acts on each group in the mean of the step predicted last, which ends at these displacements and is linear.
+    /// The stress of each group, averaged over the step predicted last, whose linear displacements end at `now`.
     #[cfg(feature = "friction")]
     pub(crate) fn mean_stress(&mut self, now: &[f64], mean: &mut Vec<f64>) {
         self.normal.mean_stress(&mut self.rule, now, mean);
@@ -339,8 +339,8 @@ impl ExponentialRule {
         })
     }
 
-    /// Of q_i in the mean of the step predicted last: the parts of its start, and of a change of u that is linear on
-    /// it, φ₁ and E_i φ₂.
+    /// The parts of q_i averaged over the step predicted last that its start has, and a change of u that is linear on
+    /// the step: φ₁ and E_i φ₂.
     fn mean_of(&mut self, branch: usize) -> [f64; 2] {
         let (modulus, tau) = self.relaxation.terms()[branch];
         let [first, second, ..] = self.relaxed.of(branch, self.tried.dt / tau).phi;

@@ -19,7 +19,7 @@ fn travelled(now: f64, before: f64, far: f64) -> f64 {
 }
 
 /// What the bodies take up in a step whose displacements are linear in time: ∫∫ θ(l) ΔU(l′) κ(max(l, l′)) dl dl′ with θ
-/// in its mean. Their springs and dashpots have no more and no less of it.
+/// averaged over it. Their springs and dashpots have no more and no less of it.
 fn taken(history: &mut GroupHistory, groups: &[Group], Shear { trial, mean, .. }: &mut Shear) -> f64 {
     history.mean_shear(trial, mean);
     let Some(before) = history.sheared() else { return 0.0 };

@@ -34,7 +34,7 @@ pub(in crate::states) struct Shear {
     /// θ of each group at its end.
     #[cfg_attr(feature = "checkpoint", serde(skip))]
     tractions: Vec<f64>,
-    /// θ of each group in its mean.
+    /// θ of each group, averaged over the step.
     #[cfg_attr(feature = "checkpoint", serde(skip))]
     mean: Vec<f64>,
     /// ∫ θ dl \[N\].
