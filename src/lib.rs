@@ -218,11 +218,7 @@ mod sum;
 
 pub use axis::Axis;
 pub use contact::ViscoelasticContact;
-#[cfg(feature = "text")]
-pub use error::TextError;
-pub use error::{
-    Convergence, Error, ErrorKind, FileError, KernelError, OutputError, Result, Special, Trend, UserError,
-};
+pub use error::{Convergence, Error, ErrorKind, OutputError, Refusal, Result, Special, Trend, UserError};
 pub use grid::Grid;
 #[cfg(feature = "text")]
 pub use input::{Delimiter, TextFormat};

@@ -9,8 +9,7 @@ use std::sync::{Mutex, PoisonError};
 use crate::prelude::*;
 use pyo3::create_exception;
 use pyo3::exceptions::{PyException, PyMemoryError, PyNotImplementedError, PyOSError};
-use viscocontact::states::StatesError;
-use viscocontact::{Error, ErrorKind, FileError, UserError};
+use viscocontact::{Error, ErrorKind, UserError};
 use viscocontact_identify::Error as IdentifyError;
 
 use crate::friction::slides;
@@ -63,12 +62,12 @@ pub fn raise(error: &Error) -> PyErr {
         return raised;
     }
     let text = with_causes(error);
-    if let Error::States(StatesError::Slides { over_limit, .. }) = error {
+    if let Error::Slides { over_limit, direction: None, .. } = error {
         return slides(text, *over_limit, None);
     }
     match error.kind() {
         // a name that is not allowed, as any other value
-        ErrorKind::File if matches!(error, Error::File(FileError::Extension { .. })) => PyValueError::new_err(text),
+        ErrorKind::File if error.code() == "extension" => PyValueError::new_err(text),
         ErrorKind::File => os_error(error, text),
         ErrorKind::Memory => PyMemoryError::new_err(text),
         ErrorKind::Cancelled => Cancelled::new_err(text),
@@ -82,14 +81,14 @@ pub fn raise(error: &Error) -> PyErr {
 pub fn unreadable(path: &Path) -> impl FnOnce(io::Error) -> PyErr {
     move |error| {
         let (file, reason, kind) = (path.display().to_string(), error.to_string(), Some(error.kind()));
-        raise(&FileError::Unreadable { file, reason, kind }.into())
+        raise(&Error::Unreadable { file, reason, kind })
     }
 }
 
 /// The OSError of the kind that its number has, with the name of the file, as of `open`.
 fn os_error(error: &Error, text: String) -> PyErr {
     let file = match error {
-        Error::File(FileError::Unreadable { file, .. }) => file.clone(),
+        Error::Unreadable { file, .. } => file.clone(),
         Error::Checkpoint { path, .. } => path.display().to_string(),
         Error::Output(error) => error.path().display().to_string(),
         _ => return PyOSError::new_err(text),

@@ -5,7 +5,6 @@ use viscocontact::elastic::ElasticContact;
 use viscocontact::friction::{Component, Coulomb, FrictionContact, FrictionLimit, Lesser, Outcome, ShearLoad, Tresca};
 use viscocontact::load::LoadHistory;
 use viscocontact::prelude::*;
-use viscocontact::states::StatesError;
 
 use crate::{Draw, rheology, shape};
 
@@ -128,7 +127,7 @@ fn sheared(draw: &mut Draw) -> Bits {
                 _ => Load::spring(draw.within(1e3, 1e4), draw.within(-1e-5, 1e-5)),
             };
             match contact.step_sheared(dt, Load::force(normal), along) {
-                Err(Error::States(StatesError::Slides { .. })) => {}
+                Err(Error::Slides { .. }) => {}
                 other => drop(other?),
             }
         }

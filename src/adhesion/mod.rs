@@ -21,7 +21,6 @@ mod linear_softening;
 mod van_der_waals;
 
 pub use crate::attraction::Attraction;
-pub use crate::error::AdhesionError;
 pub use dugdale::Dugdale;
 pub use exponential::ExponentialAttraction;
 pub use linear_softening::LinearSoftening;

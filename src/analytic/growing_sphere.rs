@@ -1,7 +1,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use crate::error::{Error, LoadError, Result, StepError, positive, within};
+use crate::error::{Error, Refusal, Result, StepError, positive, within};
 use crate::load::{Load, LoadHistory, StepLoad};
 use crate::quadrature::{GaussLegendre, bisect};
 use crate::rheology::{CreepSpectrum, Material, RelaxationSpectrum};
@@ -76,9 +76,9 @@ impl GrowingSphere {
             return Err(Error::Step(StepError::NoElasticResponse { time: 0.0, what }));
         }
         let [given, _] = load.at(0.0).kind();
-        let (field, needed) = ("the growing sphere", "a force");
-        if given != needed {
-            return Err(LoadError::WrongKind { field, needed, given }.into());
+        if given != "a force" {
+            let what = format!("the growing sphere needs a force, not {given}");
+            return Err(Refusal::value("load_wrong_kind", what, "").into());
         }
         let relaxation = creep.relaxation();
         Ok(GrowingSphere { radius, creep, relaxation, load: Arc::new(load), step: None, rule: GaussLegendre::new(20) })

@@ -34,8 +34,6 @@ mod computation;
 mod scene;
 mod stepper;
 
-#[cfg(feature = "checkpoint")]
-pub use crate::error::CheckpointError;
 pub use crate::error::StepError;
 pub use crate::fields::BodyState;
 pub use builder::Builder;

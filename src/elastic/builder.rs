@@ -7,7 +7,7 @@ use crate::elastic::ElasticContact;
 use crate::equilibrium::Settings;
 use crate::equilibrium::indenter::even_axes_of;
 use crate::equilibrium::{Ground, Indenter, Region};
-use crate::error::{Error, Result, positive};
+use crate::error::{Result, missing, positive};
 use crate::geometry::{Gap, Geometry, Missed, Waves, evaluate};
 use crate::kernel::{HalfSpace, InfluenceKernel};
 
@@ -103,7 +103,7 @@ impl ElasticBuilder {
 
     fn ground(&self) -> Result<(Ground, f64)> {
         let ground = Ground::of(&self.grid, self.kernel.as_ref(), self.settings, self.gaps.len())?;
-        let modulus = self.modulus.ok_or(Error::Missing { part: "modulus" })?;
+        let modulus = self.modulus.ok_or_else(|| missing("modulus"))?;
         Ok((ground, 1.0 / positive("contact modulus", modulus)?))
     }
 }

@@ -5,9 +5,10 @@ use std::sync::Arc;
 use crate::Grid;
 use crate::attraction::Attraction;
 use crate::equilibrium::{Indenter, Region, Settings};
-use crate::error::{Error, KernelError, Result, count_within};
+use crate::error::{Refusal, Result, count_within, missing};
 use crate::kernel::{HalfSpace, InfluenceKernel};
 use crate::parallel::Rows;
+use crate::rounded::rounded;
 use crate::solver::{Bands, Extension};
 
 /// Grid, kernel and settings, without a material.
@@ -40,8 +41,13 @@ impl Ground {
         check_bodies(bodies)?;
         let kernel = match kernel {
             Some(kernel) if kernel.grid() != grid => {
-                let [kernel, contact] = [kernel.grid(), grid].map(|grid| (grid.cells(), grid.spacing()));
-                return Err(KernelError::WrongGrid { kernel, contact }.into());
+                let [(made, [a, b]), (has, [c, d])] =
+                    [kernel.grid(), grid].map(|grid| (grid.cells(), grid.spacing().map(|side| rounded(side, 5))));
+                let what = format!(
+                    "the kernel was made for {} × {} cells of {a} m × {b} m, the contact has {} × {} of {c} m × {d} m",
+                    made[0], made[1], has[0], has[1]
+                );
+                return Err(Refusal::value("kernel_wrong_grid", what, ": make it for the grid of the contact").into());
             }
             Some(kernel) => Arc::clone(kernel),
             None => Arc::new(InfluenceKernel::half_space(grid)?),
@@ -91,7 +97,7 @@ impl Ground {
 /// Rejects no rigid body, and too many.
 pub(crate) fn check_bodies(bodies: usize) -> Result<()> {
     if bodies == 0 {
-        return Err(Error::Missing { part: "geometry" });
+        return Err(missing("geometry"));
     }
     count_within("rigid bodies", bodies, u16::try_from(bodies).is_ok(), "65535 at most")
 }

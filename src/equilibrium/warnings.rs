@@ -107,8 +107,8 @@ bitflags! {
         const NO_CONTACT = 1 << 18;
         /// The attraction beyond the edge of the grid, which is not computed, would add more than 1e-3 of the force
         /// ([`Figures::beyond_edge`](crate::contact::Figures::beyond_edge)), or than
-        /// [`Settings::tolerance`](crate::contact::Settings::tolerance): enlarge the grid. From 5 % on a step fails
-        /// with [`AdhesionError::BeyondEdge`](crate::adhesion::AdhesionError::BeyondEdge). Only with
+        /// [`Settings::tolerance`](crate::contact::Settings::tolerance): enlarge the grid. From 5 % on a step fails.
+        /// Only with
         /// [`Edge::Refuse`](crate::contact::Edge::Refuse).
         const BEYOND_EDGE = 1 << 19;
         /// Waves that hold more than a tenth of the elastic energy of a steady motion, or of its

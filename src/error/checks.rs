@@ -1,6 +1,6 @@
 //! Checks of arguments.
 
-use super::{Error, Result};
+use super::{Error, Refusal, Result};
 
 /// Accepts finite values above zero.
 pub(crate) fn positive(field: &'static str, value: f64) -> Result<f64> {
@@ -55,6 +55,22 @@ pub(crate) fn in_order(
         before = Some(value);
     }
     Ok(())
+}
+
+/// The error of a builder without a part that every contact needs.
+pub(crate) fn missing(part: &'static str) -> Error {
+    let remedy = format!(": call Builder::{part} before build");
+    Refusal::value("missing", format!("a contact needs {part}"), &remedy).naming(part).into()
+}
+
+/// The error of what was taken of another contact.
+pub(crate) fn other_contact(what: &str, remedy: &str) -> Error {
+    Refusal::value("other_contact", format!("{what} was taken of another contact"), remedy).into()
+}
+
+/// That of a snapshot.
+pub(crate) fn of_other_contact() -> Error {
+    other_contact("the snapshot", ": only snapshots of the contact or of a clone can be restored")
 }
 
 /// Accepts a slice of exactly `expected` values.

@@ -1,67 +1,29 @@
 //! The error type of the crate, and the checks that return it.
 
-#[cfg(feature = "adhesion")]
-mod adhesion;
-#[cfg(feature = "checkpoint")]
-mod checkpoint;
 mod checks;
 mod convergence;
 pub(crate) mod coverage;
 mod debug;
-mod file;
-#[cfg(feature = "friction")]
-mod friction;
-mod kernel;
 mod kind;
-mod load;
-#[cfg(feature = "surfaces")]
-mod map;
-mod material;
 mod output;
 mod ranks;
-#[cfg(feature = "sliding")]
-mod sliding;
-#[cfg(feature = "states")]
-mod states;
+mod refusal;
 mod step;
-#[cfg(feature = "data")]
-mod table;
-#[cfg(feature = "text")]
-mod text;
 mod user;
 #[cfg(feature = "adhesion")]
 mod violation;
 
-#[cfg(feature = "adhesion")]
-pub use adhesion::AdhesionError;
-#[cfg(feature = "checkpoint")]
-pub use checkpoint::CheckpointError;
 pub(crate) use checks::{
-    LONGEST, count_within, exact_length, finite, in_order, least_length, length, non_negative, poisson_ratio, positive,
-    within,
+    LONGEST, count_within, exact_length, finite, in_order, least_length, length, missing, non_negative,
+    of_other_contact, other_contact, poisson_ratio, positive, within,
 };
 pub use convergence::{Convergence, Trend};
 pub use coverage::Special;
-pub use file::FileError;
-#[cfg(feature = "friction")]
-pub use friction::FrictionError;
-pub use kernel::KernelError;
 pub use kind::ErrorKind;
-pub use load::LoadError;
-#[cfg(feature = "surfaces")]
-pub use map::MapError;
-pub use material::MaterialError;
 pub use output::OutputError;
 pub use ranks::RanksError;
-#[cfg(feature = "sliding")]
-pub use sliding::SlidingError;
-#[cfg(feature = "states")]
-pub use states::StatesError;
+pub use refusal::Refusal;
 pub use step::StepError;
-#[cfg(feature = "data")]
-pub use table::{Place, TableError};
-#[cfg(feature = "text")]
-pub use text::TextError;
 pub use user::UserError;
 pub(crate) use user::{Failure, or_failure_of};
 #[cfg(feature = "laws")]
@@ -69,7 +31,7 @@ pub(crate) use violation::KIND_OF_LOAD;
 #[cfg(feature = "adhesion")]
 pub use violation::{Location, Verdict, Violation};
 
-use crate::rounded::{rounded, without_noise};
+use crate::rounded::{TIME, rounded, without_noise};
 
 /// Everything that can go wrong, with the numbers needed to correct it.
 ///
@@ -163,9 +125,18 @@ pub enum Error {
         rule: &'static str,
     },
 
-    /// A load or a load history is not allowed.
-    #[error(transparent)]
-    Load(#[from] LoadError),
+    /// A load history returned a value that no load can have, at the end of a step or at a time within it.
+    #[error("the load history returned {field} = {value:?} at t = {time} s: it must be {allowed}", time = rounded(*.time, TIME))]
+    LoadOutOfRange {
+        /// The time asked for \[s\].
+        time: f64,
+        /// The quantity.
+        field: &'static str,
+        /// The value returned.
+        value: f64,
+        /// The allowed range.
+        allowed: &'static str,
+    },
 
     /// A geometry returned NaN or −∞ for the gap of a cell; a gap must be finite, or +∞ where there is no body.
     #[error("the initial gap at cell [{}, {}], x = ({}, {}) m, is {value}: it must be finite, or +inf where there \
@@ -193,99 +164,117 @@ pub enum Error {
         cells: usize,
     },
 
-    /// A [`Builder`](crate::contact::Builder) lacks a part that every contact needs.
-    #[error("a contact needs {part}: call Builder::{part} before build")]
-    Missing {
-        /// The method of the builder that sets the part.
-        part: &'static str,
+    /// The mesh does not resolve the zone in which the attraction acts.
+    #[error(
+        "the attraction acts over a zone of {cells:.2} cells at the edge of the contact, and at least {minimum} are \
+        needed: take cells of at most {} m, or a range of at least {} m (a longer range at the same work of \
+        separation changes the pull-off force of an elastic body by little while Tabor's number stays above 3; on \
+        a creeping body it stands for a slower pull)",
+        rounded(*.spacing, 3), rounded(*.range, 3)
+    )]
+    ZoneNotResolved {
+        /// Cells in the zone: E* at once over the steepest slope of the attraction, or over w/ρ² if that is more, and
+        /// over the side of a cell.
+        cells: f64,
+        /// Minimum number of cells.
+        minimum: f64,
+        /// Maximum side of a cell that resolves the zone \[m\].
+        spacing: f64,
+        /// Minimum range of the attraction that this mesh resolves \[m\].
+        range: f64,
     },
 
-    /// An influence kernel is not allowed.
-    #[error(transparent)]
-    Kernel(#[from] KernelError),
+    /// The load pulls harder than the surfaces hold: no state carries it. The contact stays as it was before the
+    /// step; under a given approach ([`Load::approach`](crate::load::Load::approach)) it continues apart:
+    ///
+    /// ```
+    /// use viscocontact::adhesion::ExponentialAttraction;
+    /// use viscocontact::prelude::*;
+    ///
+    /// let mut contact = ViscoelasticContact::builder(Grid::square(24, 8.0)?)
+    ///     .geometry(&Sphere::new(1.0)?)
+    ///     .material(Material::incompressible(Zener::relaxing(0.5, 0.25, 1.0)?))
+    ///     .attraction(ExponentialAttraction::new(1.0, 1.0)?)
+    ///     .settings(Settings::default().with_edge(Edge::Allow))
+    ///     .build()?;
+    /// contact.step(1.0, Load::force(1.0))?;
+    /// // a pull that grows, until it separates the bodies
+    /// let pulled_off = (1..).find_map(|k| contact.step(0.5, Load::force(-0.5 * f64::from(k))).err());
+    /// let Some(Error::PulledOff { time, force }) = pulled_off else { panic!("{pulled_off:?}") };
+    /// assert!(force < -4.0 && time == contact.time() + 0.5);
+    /// // 20 R away nothing acts: the surface recovers
+    /// contact.step(0.5, Load::approach(-20.0))?;
+    /// assert!(contact.fields().is_separated());
+    /// # Ok::<(), Error>(())
+    /// ```
+    #[error("at t = {} s the force of {} N pulls the bodies off: no contact carries it; go on under a given \
+        approach, or with a spring", rounded(*.time, TIME), rounded(*.force, 5))]
+    PulledOff {
+        /// End of the step \[s\].
+        time: f64,
+        /// The force of the load \[N\].
+        force: f64,
+    },
 
-    /// Friction in space is not covered, or was not found.
-    #[cfg(feature = "friction")]
-    #[error(transparent)]
-    Friction(#[from] FrictionError),
+    /// A force along the surface is more than friction carries.
+    #[error("at t = {} s the {}", rounded(*.time, TIME), sliding(*.over_limit, *.direction))]
+    Slides {
+        /// End of the step \[s\].
+        time: f64,
+        /// The force over what is carried; in space, the forces in their ratio.
+        over_limit: f64,
+        /// In space, shifts and twist of the sliding motion, of the largest component 1.
+        direction: Option<[f64; 3]>,
+    },
 
-    /// A steady motion was not found, or there is none.
-    #[cfg(feature = "sliding")]
-    #[error(transparent)]
-    Sliding(#[from] SlidingError),
+    /// The pressure of an elastic contact falls somewhere while its load grows, so that its states are no family of
+    /// contacts that only grow. [`ViscoelasticContact`](crate::ViscoelasticContact) computes such a scene.
+    #[error(
+        "between the levels {} and {} m² the pressure of the elastic contact falls by {} of the maximum pressure \
+        somewhere, where at most {} is rounding: its elastic states do not superpose; step it with \
+        ViscoelasticContact",
+        rounded(.levels[0], 3), rounded(.levels[1], 3), rounded(*.fall, 3), rounded(*.allowed, 3)
+    )]
+    Shrinks {
+        /// Levels between which the pressure falls \[m²\].
+        levels: [f64; 2],
+        /// Maximum fall of the pressure of a cell over the maximum pressure.
+        fall: f64,
+        /// Maximum fall that is taken for rounding.
+        allowed: f64,
+    },
 
-    /// A rheology or a material is not allowed, or lacks a property that is needed.
-    #[error(transparent)]
-    Material(#[from] MaterialError),
-
-    /// A file cannot be read or written.
-    #[error(transparent)]
-    File(#[from] FileError),
-
-    /// A table in a text file cannot be read.
-    #[cfg(feature = "text")]
-    #[error(transparent)]
-    Text(#[from] TextError),
-
-    /// A table of measured data is not allowed.
-    #[cfg(feature = "data")]
-    #[error(transparent)]
-    Table(#[from] TableError),
-
-    /// A height map, or its file, is not allowed.
-    #[cfg(feature = "surfaces")]
-    #[error(transparent)]
-    Map(#[from] MapError),
+    /// A file cannot be read, or does not have its format.
+    #[error("{file} cannot be read: {reason}")]
+    Unreadable {
+        /// Its name, or its format if it has none.
+        file: String,
+        /// The message of the system or the reader.
+        reason: String,
+        /// The kind of the system's error; `None` if the contents cannot be read.
+        kind: Option<std::io::ErrorKind>,
+    },
 
     /// A file of results cannot be written. The cause is the [`source`](std::error::Error::source) of the error.
     #[error(transparent)]
     Output(#[from] OutputError),
 
-    /// A rank of a contact that [ranks](crate::parallel) share out has left or failed, or ranks do not agree.
-    #[error(transparent)]
-    Ranks(#[from] RanksError),
-    /// A contact of surfaces that attract each other is not covered, not resolved, or comes off.
-    #[cfg(feature = "adhesion")]
-    #[error(transparent)]
-    Adhesion(#[from] AdhesionError),
-    /// A contact on elastic states is not covered by them.
-    #[cfg(feature = "states")]
-    #[error(transparent)]
-    States(#[from] StatesError),
-
     /// A run cannot be resumed from a checkpoint.
-    #[cfg(feature = "checkpoint")]
     #[error("no run can be resumed from {}: {cause}", .path.display())]
     Checkpoint {
         /// The file.
         path: std::path::PathBuf,
         /// Why not.
-        cause: CheckpointError,
+        cause: Refusal,
     },
+
+    /// A rank of a contact that [ranks](crate::parallel) share out has left or failed, or ranks do not agree.
+    #[error(transparent)]
+    Ranks(#[from] RanksError),
 
     /// A step of a contact failed, or a run of steps. The contact is as it was.
     #[error(transparent)]
     Step(#[from] StepError),
-
-    /// A [`Snapshot`](crate::contact::Snapshot), or a history of the stress, is of another contact.
-    #[error("{what} was taken of another contact: {remedy}")]
-    OtherContact {
-        /// What was made of another contact.
-        what: &'static str,
-        /// What to do.
-        remedy: &'static str,
-    },
-
-    /// A [`Study`](crate::study::Study) found no domain that holds the contact: none is large enough.
-    #[cfg(feature = "study")]
-    #[error(
-        "no domain was found that holds the contact (the last one tried was {length:.1e} m wide): check geometry \
-        and load"
-    )]
-    NoDomain {
-        /// Side of the last domain tried \[m\].
-        length: f64,
-    },
 
     /// A function that you wrote could not give a value: a load history, a gap or a creep function. Its error is the
     /// [`source`](std::error::Error::source).
@@ -299,14 +288,25 @@ pub enum Error {
         /// The call.
         what: &'static str,
     },
+
+    /// Anything else: [`Error::code`] tells which.
+    #[error(transparent)]
+    Refused(#[from] Refusal),
 }
 
-impl Error {
-    /// A snapshot that is not of the contact to be restored.
-    pub(crate) const OF_OTHER_CONTACT: Error = Error::OtherContact {
-        what: "the snapshot",
-        remedy: "only snapshots of the contact or of a clone can be restored",
-    };
+/// What slides, by how much, and what to do.
+fn sliding(over_limit: f64, direction: Option<[f64; 3]>) -> String {
+    let times = rounded(over_limit, 5);
+    match direction {
+        None => format!(
+            "force along the surface is {times} times what friction carries, f P: the body slides away; give less, or \
+             prescribe its motion or a spring"
+        ),
+        Some(direction) => format!(
+            "load along the surface is {times} times what friction carries: the body slides along {direction:?}; give \
+             less, or prescribe its motion"
+        ),
+    }
 }
 
 /// The result of every fallible call of the crate.

@@ -3,8 +3,6 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::{Error, FileError};
-
 /// A file or folder of results that cannot be written, and why.
 ///
 /// The cause is the [`source`](std::error::Error::source) of the error, an [`io::Error`]: the message names the path
@@ -70,29 +68,5 @@ impl std::error::Error for OutputError {
 impl PartialEq for OutputError {
     fn eq(&self, other: &OutputError) -> bool {
         self.path == other.path && self.kind() == other.kind() && self.cause.to_string() == other.cause.to_string()
-    }
-}
-
-impl Error {
-    /// The kind of the system's error behind this one: of a file that could not be read or written. `None` of all
-    /// others.
-    ///
-    /// ```
-    /// use std::io::ErrorKind;
-    /// use viscocontact::geometry::HeightMap;
-    ///
-    /// let error = HeightMap::read("no/such/map.sdf").unwrap_err();
-    /// assert_eq!(error.io_kind(), Some(ErrorKind::NotFound));
-    /// ```
-    pub fn io_kind(&self) -> Option<io::ErrorKind> {
-        match self {
-            Error::Output(error) => Some(error.kind()),
-            Error::File(FileError::Unreadable { kind, .. }) => *kind,
-            #[cfg(feature = "surfaces")]
-            Error::Map(error) => error.io_kind(),
-            #[cfg(feature = "checkpoint")]
-            Error::Checkpoint { cause, .. } => cause.io_kind(),
-            _ => None,
-        }
     }
 }

@@ -4,7 +4,7 @@ use std::fs::{self, File, FileType};
 use std::io;
 use std::path::Path;
 
-use crate::error::{Error, FileError, OutputError, Result};
+use crate::error::{Error, OutputError, Refusal, Result};
 
 mod appending;
 #[cfg(feature = "npy")]
@@ -21,7 +21,7 @@ pub(crate) fn open(path: &Path) -> Result<File> {
 
 /// The error of reading a file.
 pub(crate) fn unreadable(file: String, error: io::Error) -> Error {
-    Error::File(FileError::Unreadable { file, reason: error.to_string(), kind: Some(error.kind()) })
+    Error::Unreadable { file, reason: error.to_string(), kind: Some(error.kind()) }
 }
 
 /// The error of writing a file.
@@ -57,7 +57,8 @@ pub(crate) fn check_regular(path: &Path) -> Result<()> {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
         Err(error) => return Err(failed(path, error)),
     };
-    Err(Error::File(FileError::NotAFile { path: path.display().to_string(), kind }))
+    let what = format!("{} cannot be written: it is {kind}, not a regular file", path.display());
+    Err(Refusal::file("not_a_file", what, "; give the path of a file").into())
 }
 
 fn kind(found: FileType) -> &'static str {

@@ -3,10 +3,11 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use super::kernel::other_bodies;
 use crate::contact::{Builder, Snapshot, Step, StepError, StepReport, TimeRule, ViscoelasticContact};
 use crate::equilibrium::Held;
 use crate::equilibrium::constraints::validate_loads;
-use crate::error::{Error, FrictionError, Result, Special, UserError};
+use crate::error::{Error, Refusal, Result, Special, UserError};
 use crate::friction::history::ShearHistory;
 use crate::friction::kernel::{TangentialKernel, TangentialResponse};
 use crate::friction::limit::FrictionLimit;
@@ -20,6 +21,7 @@ use crate::hereditary::Interpolant;
 use crate::load::Load;
 use crate::load::along::LateralWork;
 use crate::parallel::in_pool;
+use crate::rounded::{TIME, rounded};
 use crate::run::doubled::SavedRun;
 use crate::run::doubled::plain::Plain;
 use crate::solver::RigidMotion;
@@ -82,12 +84,23 @@ pub(super) struct StepFields {
     work: Work,
 }
 
+/// The error of tractions whose residual stays above what is allowed.
+fn not_found(time: f64, residual: f64, tolerance: f64, iterations: usize) -> Error {
+    let what = format!(
+        "at t = {} s the tractions along the surface were not found: residual {residual:.1e} after {iterations} Newton \
+         steps, where {tolerance:.1e} is allowed",
+        rounded(time, TIME)
+    );
+    let remedy = "; take a shorter step, or a greater Settings::tolerance";
+    Refusal::search("friction_not_converged", what, remedy).into()
+}
+
 impl FrictionContact {
     /// The contact of a builder with a limit of friction. Its steps are linear in time
     /// ([`TimeRule::ExponentialLinear`]): slip begins and ends in kinks.
     ///
     /// # Errors
-    /// As [`Builder::build`]; [`FrictionError::OtherBodies`] of bodies whose response along the surface is not covered;
+    /// As [`Builder::build`]; if the response of the bodies along the surface is not covered;
     /// [`Error::NotCovered`] of several bodies, attraction, ranks, and grids that are fixed to the indenter.
     pub fn new(mut builder: Builder, limit: impl FrictionLimit + 'static) -> Result<FrictionContact> {
         builder.is_covered(Special::Friction)?;
@@ -95,10 +108,10 @@ impl FrictionContact {
         let normal = builder.build()?;
         let material = &normal.scene.material;
         let ratios: Vec<_> = material.poisson_ratios().collect();
-        let poisson = ratios[0].ok_or(FrictionError::OtherBodies)?;
+        let poisson = ratios[0].ok_or_else(other_bodies)?;
         let is_uncoupled = ratios.iter().all(|ratio| *ratio == Some(0.5)) || ratios.len() == 2 && material.is_pair()?;
         if !is_uncoupled {
-            return Err(FrictionError::OtherBodies.into());
+            return Err(other_bodies());
         }
         let response = TangentialResponse::new(&normal.scene.ground.kernel, poisson)?;
         Ok(FrictionContact {
@@ -123,7 +136,7 @@ impl FrictionContact {
     /// steps, of no time if it happens at once.
     ///
     /// # Errors
-    /// As [`ViscoelasticContact::step`]; [`FrictionError::NotConverged`]; if a number is not finite, or the limit returns
+    /// As [`ViscoelasticContact::step`]; if the tractions are not found, a number is not finite, or the limit returns
     /// a negative number or none. The contact is then as it was.
     pub fn step(&mut self, dt: f64, load: Load, shear: ShearLoad) -> Result<Outcome> {
         self.step_unless(&AtomicBool::new(false), dt, load, shear)
@@ -207,7 +220,7 @@ impl FrictionContact {
             if problem.is_cancelled() {
                 return Err(Error::Cancelled { what: "a step" });
             }
-            return Err(FrictionError::NotConverged { time, iterations, residual, tolerance }.into());
+            return Err(not_found(time, residual, tolerance, iterations));
         }
         let mut change = given;
         problem.driven().for_each(|k| change[k] = trial.motion[k]);
@@ -381,9 +394,6 @@ pub(super) fn size(of: [f64; 3], arm: f64) -> f64 {
 }
 
 fn not_a_limit(value: f64) -> Error {
-    UserError::new(
-        "a limit of friction",
-        format!("it returned {value} Pa where a number between 0 and 1e100 is needed"),
-    )
-    .into()
+    let cause = format!("it returned {value} Pa where a number between 0 and 1e100 is needed");
+    UserError::new("a limit of friction", cause).into()
 }

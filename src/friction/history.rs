@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::error::{Error, FrictionError, Result};
+use crate::error::{Error, Refusal, Result};
 use crate::friction::load::{Component, ShearLoad};
 use crate::load::{Load, LoadHistory, Tilt};
 
@@ -38,7 +38,13 @@ impl ShearHistory {
             *component = match of(&**history).map_err(Error::along)? {
                 Load::Force { normal: force, tilt: UPRIGHT } => Component::Force(force),
                 Load::Approach { approach: motion, tilt: UPRIGHT } => Component::Motion(motion),
-                other => return Err(FrictionError::OtherLoad(other.to_string()).into()),
+                other => {
+                    let what = format!(
+                        "a load along the surface is a force (Load::force) or a displacement (Load::approach) without \
+                         tilt, not {other}"
+                    );
+                    return Err(Refusal::value("friction_other_load", what, "").into());
+                }
             };
         }
         Ok(load)

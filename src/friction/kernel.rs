@@ -15,7 +15,7 @@ use std::f64::consts::PI;
 use num_complex::Complex64;
 
 use crate::Grid;
-use crate::error::{FrictionError, Result};
+use crate::error::{Error, Refusal, Result};
 use crate::fft::RealPlane;
 use crate::friction::operator::Operator;
 use crate::friction::preconditioner::Preconditioner;
@@ -36,11 +36,19 @@ pub(super) struct TangentialResponse {
     rule: GaussLegendre,
 }
 
+/// The error of bodies whose response along the surface is not known, or depends on the pressure.
+pub(super) fn other_bodies() -> Error {
+    let what = "friction in space covers half-spaces, periodic bodies and line contacts of a constant Poisson's ratio \
+        that do not couple loads along the surface and normal to it";
+    let remedy = ": Poisson's ratio 1/2 on a rigid body, or two bodies of one material";
+    Refusal::unsupported("friction_other_bodies", what, remedy).into()
+}
+
 impl TangentialResponse {
     /// Of the body of a normal kernel, of this Poisson's ratio; a load that is periodic along one axis of several
     /// cells, layers and other kernels have none here.
     pub(super) fn new(normal: &InfluenceKernel, poisson: f64) -> Result<TangentialResponse> {
-        let body = normal.half_space_below().ok_or(FrictionError::OtherBodies)?;
+        let body = normal.half_space_below().ok_or_else(other_bodies)?;
         let rule = GaussLegendre::new(6);
         Ok(TangentialResponse { grid: normal.grid().clone(), body, poisson, normal: normal.clone(), rule })
     }

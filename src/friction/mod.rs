@@ -36,5 +36,4 @@ pub use load::{Component, ShearLoad};
 pub use report::{FrictionReport, Outcome};
 pub use snapshot::FrictionSnapshot;
 
-pub use crate::error::FrictionError;
 pub use crate::load::along::LateralWork;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use crate::contact::StepReport;
-use crate::error::{Error, FrictionError, Result};
+use crate::error::{Error, Result};
 use crate::fields::Fields;
 use crate::friction::contact::{FrictionContact, size};
 use crate::friction::history::ShearHistory;
@@ -37,7 +37,7 @@ impl FrictionContact {
     /// Adaptive steps keep the error of motions and forces along the surface, relative to their maximum so far, and of
     /// the loss by slip within the tolerance besides that of approach and force, and solve to 1e-4 of it. The loss
     /// counts as at least a tenth of the largest motion times the largest force. More than friction carries ends the
-    /// run with [`FrictionError::Slides`]; [`FrictionContact::load_share`] tells before.
+    /// run with [`Error::Slides`]; [`FrictionContact::load_share`] tells before.
     ///
     /// ```
     /// use viscocontact::friction::{Coulomb, FrictionContact, ShearHistory};
@@ -76,7 +76,7 @@ impl Contact for FrictionContact {
         match self.advance(&AtomicBool::new(false), dt, load, shear, self.tolerance)? {
             Outcome::Holds(report) => Ok(report.normal),
             Outcome::Slides { direction, over_limit } => {
-                Err(FrictionError::Slides { time, direction, over_limit }.into())
+                Err(Error::Slides { time, over_limit, direction: Some(direction) })
             }
         }
     }
@@ -169,7 +169,7 @@ impl Contact for FrictionContact {
     }
 
     fn is_beyond(&self, error: &Error) -> bool {
-        matches!(error, Error::Friction(FrictionError::Slides { .. }))
+        matches!(error, Error::Slides { .. })
     }
 
     fn is_known_until(&self, end: f64) -> Result<()> {

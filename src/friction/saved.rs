@@ -90,13 +90,13 @@ impl FrictionContact {
     ) -> Result<()> {
         let (own, friction, cells) = (&self.state, [("friction", self.friction())], self.normal.grid().cells());
         let saved = read(&mut self.normal, &|saved: Option<&Saved<'static>>| {
-            let Some(Saved { friction: found, state, run }) = saved else { return malformed("no friction") };
+            let Some(Saved { friction: found, state, run }) = saved else { return Err(malformed("no friction")) };
             require(std::slice::from_ref(found), &friction)?;
             if !state.fits(own, cells) {
-                return malformed("tractions that no contact has");
+                return Err(malformed("tractions that no contact has"));
             }
             match run {
-                Some((progress, record)) if !progress.fits() || !record.fits() => malformed(NO_RUN),
+                Some((progress, record)) if !progress.fits() || !record.fits() => Err(malformed(NO_RUN)),
                 _ => Ok(()),
             }
         })?;

@@ -32,8 +32,6 @@ mod surfaces;
 mod waves;
 mod wavy;
 
-#[cfg(feature = "surfaces")]
-pub use crate::error::MapError;
 pub use cone::Cone;
 pub use cylinder::Cylinder;
 pub use ellipsoid::Ellipsoid;

@@ -4,10 +4,11 @@ use std::cell::OnceCell;
 use std::fmt;
 
 use super::heading::{UnitOf, begins_with, symbol, unit_of};
-use super::lines::{TextRow, shortened};
+use super::lines::TextRow;
+use super::number::{not_numeric, shortened};
 use super::table::{TextTable, numbered};
 use super::unit::{Quantity, name};
-use crate::error::TextError;
+use crate::error::{Error, Refusal, Result};
 
 /// Columns of equal values are one: a frequency in Hz and in rad/s.
 const EQUAL: f64 = 0.02;
@@ -76,13 +77,22 @@ impl TakenColumn {
     /// The size of its unit in SI.
     ///
     /// # Errors
-    /// If the heading has no unit of its quantity, or one of two meanings ([`TextError::Unit`]).
-    pub fn unit(&self) -> Result<f64, TextError> {
+    /// If the heading has no unit of its quantity, or one of two meanings.
+    pub fn unit(&self) -> Result<f64> {
         match &self.unit_of {
             UnitOf::Sizes(_, sizes) if sizes.len() == 1 => Ok(sizes[0]),
             _ => {
                 let (line, column, heading) = (self.line, self.index + 1, shortened(&self.heading));
-                Err(TextError::Unit { line, column, heading, quantity: self.name, example: self.quantity.si() })
+                let (quantity, example) = (self.name, self.quantity.si());
+                let what = format!(
+                    "line {line}, column {column}: the heading {heading:?} has no unit of the {quantity}, or an \
+                     ambiguous one"
+                );
+                let remedy = format!(
+                    "; write it in brackets, as in '[{example}]' or '[10^3 {example}]', or state it \
+                     (TextTable::with_heading, Units)"
+                );
+                Err(Refusal::file("text_unit", what, &remedy).naming(quantity).into())
             }
         }
     }
@@ -122,14 +132,26 @@ pub struct TableRow {
     pub values: Vec<f64>,
 }
 
+impl TableRow {
+    /// Accepts finite numbers of these columns.
+    ///
+    /// # Errors
+    /// If one is not finite, with its line and column.
+    pub fn check_finite(&self, columns: &[TakenColumn]) -> Result<()> {
+        let not_finite = self.values.iter().zip(columns).find(|(value, _)| !value.is_finite());
+        let error = |(value, column): (&f64, &TakenColumn)| not_numeric(self.line, column.index, &value.to_string());
+        not_finite.map_or(Ok(()), |found| Err(error(found)))
+    }
+}
+
 impl TextTable {
     /// The numbers of `columns` in every row, in the units of the file.
     ///
     /// # Errors
     /// If a row has another number of columns than the headings (or than `columns`, without headings), but for words
-    /// that are lacking at its end; if a field is not a number; each with its line ([`TextError`]); or if a section has
-    /// other headings ([`TextError::Section`]).
-    pub fn rows(&self, columns: &[TakenColumn]) -> Result<Vec<TableRow>, TextError> {
+    /// that are lacking at its end; if a field is not a number; each with its line; or if a section has
+    /// other headings.
+    pub fn rows(&self, columns: &[TakenColumn]) -> Result<Vec<TableRow>> {
         self.rows_by(columns, |row, column| row.number(column))
     }
 
@@ -137,8 +159,8 @@ impl TextTable {
     pub(crate) fn rows_by(
         &self,
         columns: &[TakenColumn],
-        number: impl Fn(&TextRow<'_>, usize) -> Result<f64, TextError>,
-    ) -> Result<Vec<TableRow>, TextError> {
+        number: impl Fn(&TextRow<'_>, usize) -> Result<f64>,
+    ) -> Result<Vec<TableRow>> {
         let width = if self.headings.is_empty() { columns.len() } else { self.headings.len() };
         let names: Vec<&str> = if self.headings.is_empty() {
             columns.iter().map(|column| column.name).collect()
@@ -146,7 +168,12 @@ impl TextTable {
             self.headings.iter().map(String::as_str).collect()
         };
         if let Some(other) = self.other() {
-            return Err(TextError::Section { line: other.line, headings: self.line });
+            let what = format!(
+                "line {} begins a section with other headings or units than those of line {}",
+                other.line, self.line
+            );
+            let remedy = ": choose one by TextTable::section, or split the file";
+            return Err(Refusal::file("text_section", what, remedy).into());
         }
         let names = shortened(&names.join(", "));
         let (last, ends) = (columns.iter().map(|column| column.index).max().unwrap_or(0), OnceCell::new());
@@ -190,7 +217,7 @@ impl TextTable {
     ///
     /// # Errors
     /// If several may be it: the error names them.
-    pub fn find(&self, wanted: &WantedColumn) -> Result<Option<TakenColumn>, TextError> {
+    pub fn find(&self, wanted: &WantedColumn) -> Result<Option<TakenColumn>> {
         let taken = |index: usize| {
             let heading = self.headings[index].clone();
             let unit_of = unit_of(&heading, wanted.quantity);
@@ -245,14 +272,20 @@ impl TextTable {
     }
 
     /// The error of a column that no heading names, or that `several` columns may be.
-    pub fn missing(&self, wanted: &WantedColumn, several: &str) -> TextError {
+    pub fn missing(&self, wanted: &WantedColumn, several: &str) -> Error {
         let found = if self.headings.is_empty() {
             "none".into()
         } else {
             shortened(&self.headings.join(", ")) + &self.looks_like(wanted.quantity)
         };
         let several = if several.is_empty() { String::new() } else { format!(": {several}") };
-        TextError::Heading { line: self.line, column: wanted.name, words: wanted.words.join(", "), several, found }
+        let (line, column, words) = (self.line, wanted.name, wanted.words.join(", "));
+        let what = format!("line {line}: not exactly one heading names the {column}{several} (headings: {found})");
+        let remedy = format!(
+            "; begin one with {words}, choose by TextTable::only, name columns by TextTable::with_heading, skip lines \
+             above the table by TextFormat::with_skipped_lines, or state TextFormat::with_delimiter"
+        );
+        Refusal::file("text_heading", what, &remedy).naming(column).into()
     }
 
     /// A column of a table without headings, by its place.

@@ -5,7 +5,8 @@ use std::io::Read;
 
 use super::encoding::decoded;
 use super::format::{Delimiter, TextFormat};
-use crate::error::{Error, FileError, Result, TextError};
+use super::number::{no_number, not_numeric, number};
+use crate::error::{Error, Refusal, Result};
 
 /// Most rows at the beginning and at the end of a text, and most fields, from which delimiter and decimal mark are
 /// found out: the beginning may be a long preamble.
@@ -37,7 +38,7 @@ impl Text {
         let bytes = super::bytes(reader, name)?;
         let not_a_text = || {
             let reason = "it is not a text file".into();
-            Error::File(FileError::Unreadable { file: name.into(), reason, kind: None })
+            Error::Unreadable { file: name.into(), reason, kind: None }
         };
         let (mut text, encoding) = decoded(&bytes).ok_or_else(not_a_text)?;
         if let Some(last) = format.skipped_lines.checked_sub(1) {
@@ -231,29 +232,36 @@ pub(crate) struct TextRow<'a> {
 
 impl TextRow<'_> {
     /// Accepts rows of `expected` fields, whose `columns` the error names.
-    pub(crate) fn check_width(&self, expected: usize, columns: &str) -> Result<(), TextError> {
+    pub(crate) fn check_width(&self, expected: usize, columns: &str) -> Result<()> {
         let (line, found) = (self.line, self.fields.len());
         if found == expected {
             return Ok(());
         }
         let delimiter = self.dialect.delimiter.marks().1;
-        Err(TextError::Columns { line, found, expected, columns: columns.into(), delimiter })
+        let what =
+            format!("line {line}: {found} columns separated by {delimiter}, but {expected} are needed ({columns})");
+        let remedy = "; TextFormat::with_delimiter states another delimiter; if another table begins here, split the \
+            file; of a row that is cut off, leave the line out by # at its beginning";
+        Err(Refusal::file("text_columns", what, remedy).into())
     }
 
     /// The number in a field.
-    pub(crate) fn number(&self, column: usize) -> Result<f64, TextError> {
+    pub(crate) fn number(&self, column: usize) -> Result<f64> {
         let (field, decimal_comma) = (&*self.fields[column], self.dialect.decimal_comma);
         number(field, decimal_comma).ok_or_else(|| match number(field, !decimal_comma) {
             Some(_) => {
-                TextError::DecimalMark { line: self.line, column: column + 1, text: shortened(field), decimal_comma }
+                let found = no_number(self.line, column, field);
+                let what = format!("{found} with TextFormat::with_decimal_comma = {decimal_comma}");
+                let remedy = ": state the other value, or remove separators of thousands";
+                Refusal::file("text_decimal_mark", what, remedy).into()
             }
             None => self.not_numeric(column),
         })
     }
 
     /// The error of a field that is not a number.
-    pub(crate) fn not_numeric(&self, column: usize) -> TextError {
-        TextError::NotNumeric { line: self.line, column: column + 1, text: shortened(&self.fields[column]) }
+    pub(crate) fn not_numeric(&self, column: usize) -> Error {
+        not_numeric(self.line, column, &self.fields[column])
     }
 
     /// Whether a field is a number with a decimal point or a decimal comma.
@@ -282,22 +290,6 @@ impl TextRow<'_> {
             self.fields.pop();
         }
     }
-}
-
-/// The number that a text is.
-pub(crate) fn number(text: &str, decimal_comma: bool) -> Option<f64> {
-    let text = match decimal_comma {
-        true if text.contains('.') => return None,
-        true => Cow::Owned(text.replace(',', ".")),
-        false => Cow::Borrowed(text),
-    };
-    text.parse().ok().or_else(|| text.replace(['d', 'D'], "e").parse().ok())
-}
-
-/// A text, shortened for errors.
-pub(crate) fn shortened(text: &str) -> String {
-    const MOST: usize = 60;
-    if text.chars().count() <= MOST { text.to_owned() } else { text.chars().take(MOST).chain("…".chars()).collect() }
 }
 
 #[cfg(test)]
@@ -390,7 +382,8 @@ mod tests {
             let table = Text::read(text.as_bytes(), "text", TextFormat::default().with_decimal_comma(decimal_comma));
             let (table, mark) = (table.unwrap(), if decimal_comma { "1.000" } else { "1,000" });
             let error = table.rows().next().unwrap().number(1).unwrap_err();
-            assert_eq!(error, TextError::DecimalMark { line: 1, column: 2, text: mark.into(), decimal_comma });
+            assert_eq!(error.code(), "text_decimal_mark");
+            assert!(error.to_string().starts_with(&format!("line 1, column 2: {mark:?} is not")), "{error}");
             assert!(error.to_string().contains(&format!("decimal_comma = {decimal_comma}")), "{error}");
         }
     }

@@ -6,10 +6,11 @@ use std::path::Path;
 
 use super::format::TextFormat;
 use super::heading::is_at;
-use super::lines::{Text, TextRow, shortened};
+use super::lines::{Text, TextRow};
+use super::number::shortened;
 use super::sections::{ROWS_OF_NUMBERS, Section, are_numbers, are_units, headings, merged, sections, with_units};
 use super::unit::{Quantity, readings};
-use crate::error::{Result, TextError};
+use crate::error::{Error, Refusal, Result};
 
 /// Rows among which the first row of numbers is looked for, before eight times as many are read.
 const SEARCHED: usize = 1000;
@@ -58,8 +59,8 @@ impl TextTable {
     /// Reads a file.
     ///
     /// # Errors
-    /// If it cannot be read or is no text ([`FileError::Unreadable`](crate::FileError)), or has numbers before its
-    /// headings ([`TextError::Preamble`]).
+    /// If it cannot be read or is no text ([`Error::Unreadable`]), or has numbers before its
+    /// headings.
     pub fn open(path: impl AsRef<Path>, format: TextFormat) -> Result<TextTable> {
         let path = path.as_ref();
         TextTable::named(crate::file::open(path)?, &path.display().to_string(), format)
@@ -89,9 +90,10 @@ impl TextTable {
             _ => (above, None, None),
         };
         if let Some(row) = before.iter().find(|row| row.fields.len() > 1 && row.numbers() == row.fields.len()) {
-            return Err(
-                TextError::Preamble { line: row.line, headings: names.map_or(row.line, |names| names.line) }.into()
-            );
+            let (line, headings) = (row.line, names.map_or(row.line, |names| names.line));
+            let what = format!("line {line} has numbers, but the headings stand in line {headings}");
+            let remedy = ": skip the lines before it (TextFormat::with_skipped_lines), or split the file";
+            return Err(Refusal::file("text_preamble", what, remedy).into());
         }
         let first = from.first().map_or(u64::MAX, |row| row.line);
         let mut commented = false;
@@ -142,9 +144,9 @@ impl TextTable {
             let width = self.data().next().map_or(0, |row| row.fields.len());
             self.headings = vec![String::new(); width];
         }
-        let found = shortened(&self.headings.join(", "));
+        let none = self.no_column(column);
         let place = column.checked_sub(1).and_then(|place| self.headings.get_mut(place));
-        *place.ok_or(TextError::NoColumn { column: column.to_string(), found })? = heading.to_owned();
+        *place.ok_or(none)? = heading.to_owned();
         self.commented = false;
         Ok(self)
     }
@@ -160,8 +162,7 @@ impl TextTable {
             rest.is_some_and(|rest| rest.is_empty() || rest.trim_start().starts_with(['[', '(', '{', '/']))
         };
         if let Some(name) = names.iter().find(|name| !self.headings.iter().any(|heading| is_named(heading, name))) {
-            let found = shortened(&self.headings.join(", "));
-            return Err(TextError::NoColumn { column: (*name).to_owned(), found }.into());
+            return Err(self.no_column(name));
         }
         for heading in &mut self.headings {
             if !names.iter().any(|name| is_named(heading, name)) {
@@ -171,15 +172,22 @@ impl TextTable {
         Ok(self)
     }
 
+    /// The error of a column that is not there, by its name or number.
+    fn no_column(&self, column: impl fmt::Display) -> Error {
+        let what = format!("there is no column {column} (headings: {})", shortened(&self.headings.join(", ")));
+        Refusal::file("text_no_column", what, "; give one of these, or its number from 1 on").into()
+    }
+
     /// The same with one section alone, from 1 in the order of the file: one step or interval of an instrument.
     /// Headings that were given stay, unless the section has others than the first.
     ///
     /// # Errors
-    /// If there is no such section ([`TextError::NoSection`]).
+    /// If there is no such section.
     pub fn section(mut self, number: usize) -> Result<TextTable> {
         let sections = self.sections.len();
         if !(1..=sections).contains(&number) {
-            return Err(TextError::NoSection { section: number, sections }.into());
+            let remedy = format!(": give one from 1 to {sections}");
+            return Err(Refusal::file("text_no_section", format!("there is no section {number}"), &remedy).into());
         }
         let own = self.sections[number - 1].clone();
         if own.headings != self.sections[0].headings {
@@ -280,7 +288,6 @@ pub(super) fn numbered<'a>(headings: impl Iterator<Item = (usize, &'a String)>) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Error;
     use crate::input::WantedColumn;
 
     const TIME: WantedColumn =
@@ -309,9 +316,10 @@ mod tests {
             );
         }
         let two = TextTable::read(&b"1;2\n3;4\nt;J\n1;2\n3;4\n5;6\n"[..], TextFormat::default());
-        assert_eq!(two.unwrap_err(), Error::Text(TextError::Preamble { line: 1, headings: 3 }));
+        let numbers = |line| format!("line {line} has numbers, but the headings stand in line 3: ");
+        assert!(two.unwrap_err().to_string().starts_with(&numbers(1)));
         let before = TextTable::read(&b"Range;1;2\n7;8;9\nt;J;x\n1;2;3\n3;4;5\n5;6;7\n"[..], TextFormat::default());
-        assert_eq!(before.unwrap_err(), Error::Text(TextError::Preamble { line: 2, headings: 3 }));
+        assert!(before.unwrap_err().to_string().starts_with(&numbers(2)));
     }
 
     #[test]
@@ -333,7 +341,7 @@ mod tests {
             Some((1, 60.0))
         );
         for wrong in [table.clone().with_heading(0, ""), table.clone().with_heading(4, ""), table.only(&["G"])] {
-            assert!(matches!(wrong, Err(Error::Text(TextError::NoColumn { .. }))));
+            assert!(wrong.as_ref().is_err_and(|error| error.code() == "text_no_column"));
         }
         // equal in two units
         assert_eq!(index(&read("Time [ms],Time [s]\n1000,1\n2000,2\n3000,3\n")), Some((1, 1.0)));

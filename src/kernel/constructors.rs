@@ -6,7 +6,8 @@ use super::definiteness::least_eigenvalue;
 use super::influence::indices;
 use super::{Body, Ends, InfluenceKernel, Layout, Love, MEMORY_WHILE_MADE, Strip, magnitude, wave_number};
 use crate::axis::Axis;
-use crate::error::{KernelError, Result, count_within, within};
+use crate::error::{Error, Refusal, Result, count_within, within};
+use crate::rounded::rounded;
 use crate::{Grid, memory};
 
 /// Maximum difference of mirrored coefficients, relative to the maximum coefficient.
@@ -20,6 +21,13 @@ const RANGE: std::ops::RangeInclusive<f64> = 1e-100..=1e100;
 const GREATEST: f64 = 1e100;
 /// Maximum datum of a line load \[m\]: no grid of such cells is longer.
 const FARTHEST_DATUM: f64 = 1e120;
+
+/// The error of an influence coefficient, or of the compliance of a wave, that no body can have.
+fn invalid(of: &'static str, at: [isize; 2], value: f64, allowed: &'static str) -> Error {
+    let what = format!("the influence {of} [{}, {}] is {value:?}", at[0], at[1]);
+    let refusal = Refusal::value("kernel_invalid_influence", what, &format!(": it must be {allowed}"));
+    refusal.naming(of).valued(value).allowing(allowed).into()
+}
 
 impl InfluenceKernel {
     /// The kernel of a body with this response on the grid.
@@ -141,7 +149,7 @@ impl InfluenceKernel {
             // also rejects NaN
             if !(-GREATEST..=GREATEST).contains(&value) {
                 let allowed = "finite, and at most 1e100 m in absolute value";
-                return Err(KernelError::InvalidInfluence { of: "coefficient", at: [i, j], value, allowed }.into());
+                return Err(invalid("coefficient", [i, j], value, allowed));
             }
             values.push(value);
         }
@@ -152,7 +160,7 @@ impl InfluenceKernel {
                 let equal = (value - own).abs() <= UNEQUAL * greatest;
                 if !equal {
                     let allowed = "the same as that of its mirror images";
-                    return Err(KernelError::InvalidInfluence { of: "coefficient", at, value, allowed }.into());
+                    return Err(invalid("coefficient", at, value, allowed));
                 }
             }
         }
@@ -167,7 +175,17 @@ impl InfluenceKernel {
             let (minimum, maximum) = least_eigenvalue(whole, grid.len());
             let positive = minimum > -ROUNDING * maximum;
             if !positive {
-                return Err(KernelError::NotPositiveDefinite { minimum, maximum }.into());
+                let what = format!(
+                    "the influence coefficients are not positive definite: the minimum eigenvalue found is {} m, the \
+                     maximum {} m",
+                    rounded(minimum, 3),
+                    rounded(maximum, 3)
+                );
+                let remedy = "; check their signs, and that near cells influence each other more than distant ones";
+                return Err(Refusal::value("kernel_not_positive_definite", what, remedy)
+                    .naming("minimum eigenvalue")
+                    .valued(minimum)
+                    .into());
             }
         }
         Ok(kernel)
@@ -209,14 +227,13 @@ impl InfluenceKernel {
             let (value, mean) = (compliance(q(0, k[0]), q(1, k[1])), k == [0, 0]);
             if !(value <= GREATEST && (value > 0.0 || (mean && value == 0.0))) {
                 let allowed = if mean { "in [0, 1e100] m" } else { "> 0, and at most 1e100 m" };
-                let at = k.map(|index| index as isize);
-                return Err(KernelError::InvalidInfluence { of: "wave", at, value, allowed }.into());
+                return Err(invalid("wave", k.map(|index| index as isize), value, allowed));
             }
             values.push(value);
         }
         if values.iter().all(|&value| value == 0.0) {
             let allowed = "> 0 on a grid of one cell";
-            return Err(KernelError::InvalidInfluence { of: "wave", at: [0, 0], value: 0.0, allowed }.into());
+            return Err(invalid("wave", [0, 0], 0.0, allowed));
         }
         let compliance = move |[k1, k2]: [usize; 2]| values[k1 * counts[1] + k2];
         Ok(InfluenceKernel::new(grid, Body::User, [true; 2], compliance))

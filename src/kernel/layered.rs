@@ -6,7 +6,8 @@ use super::layer::{Layer, Remainder};
 use super::{Body, InfluenceKernel, Love, Strip, magnitude, wave_number};
 use crate::Grid;
 use crate::axis::Axis;
-use crate::error::{KernelError, Result, count_within, within};
+use crate::error::{Error, Refusal, Result, count_within, within};
+use crate::rounded::rounded;
 
 /// Longest cell over the thickness: the coefficients have then lost as many digits.
 const LONGEST_CELL: f64 = 1e3;
@@ -147,13 +148,21 @@ fn layer_strip(grid: &Grid, layer: Layer, axis: usize, datum: Option<f64>) -> Re
         Some(datum) if !layer.is_on_rigid() => strip(grid, axis, datum),
         None => {
             let allowed = "a distance: that at which the displacement of the half-space is zero";
-            Err(KernelError::LayerDatum { datum, allowed }.into())
+            Err(layer_datum("absent".into(), allowed))
         }
-        Some(_) => {
+        Some(datum) => {
             let allowed = "absent: far from a load a layer on a rigid base is at rest";
-            Err(KernelError::LayerDatum { datum, allowed }.into())
+            Err(layer_datum(format!("{} m", rounded(datum, 5)), allowed))
         }
     }
+}
+
+fn layer_datum(datum: String, allowed: &'static str) -> Error {
+    let what = format!("the datum of a load along a line on a layer is {datum}");
+    Refusal::value("kernel_layer_datum", what, &format!(": it must be {allowed}"))
+        .naming("datum")
+        .allowing(allowed)
+        .into()
 }
 
 /// Rejects cells that are too long for the layer.

@@ -51,7 +51,7 @@ pub(crate) use transform::{SpectralOperator, TransformWorkspace};
 
 use std::sync::{Arc, OnceLock};
 
-use crate::error::{Error, KernelError, Result, exact_length, finite};
+use crate::error::{Error, Refusal, Result, exact_length, finite};
 use crate::parallel::Rows;
 use crate::{Grid, memory};
 use influence::{Body, Response, magnitude};
@@ -207,12 +207,15 @@ impl InfluenceKernel {
     ///
     /// # Errors
     /// If no two cells of the grid are so far apart: |i| must be less than the number of cells along x1, |j| less than
-    /// that along x2 ([`KernelError::OffsetOutsideGrid`]).
+    /// that along x2.
     pub fn coefficient(&self, i: isize, j: isize) -> Result<f64> {
-        let (offset, cells) = ([i, j], self.grid.cells());
-        let at = offset.map(isize::unsigned_abs);
-        if at[0] >= cells[0] || at[1] >= cells[1] {
-            return Err(KernelError::OffsetOutsideGrid { offset, cells }.into());
+        let ([n1, n2], at) = (self.grid.cells(), [i, j].map(isize::unsigned_abs));
+        if at[0] >= n1 || at[1] >= n2 {
+            let what = format!("offset ({i}, {j}) in cells is not allowed");
+            let range = format!(
+                ": it must be in (-{n1}, {n1}) along x1 and (-{n2}, {n2}) along x2, the grid having {n1} × {n2} cells"
+            );
+            return Err(Refusal::value("kernel_offset_outside_grid", what, &range).naming("offset").into());
         }
         Ok(self.coefficient_at(at))
     }

@@ -1,6 +1,6 @@
 //! Work along the surface, and names of what acts there.
 
-use crate::error::{Error, LoadError};
+use crate::error::Error;
 
 /// Where the work along the surface went, since the contact was made \[J\]: work = slip + stored + creep.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -34,8 +34,8 @@ impl Error {
         };
         match self {
             Error::OutOfRange { field, value, allowed } => Error::OutOfRange { field: of(field), value, allowed },
-            Error::Load(LoadError::OutOfRange { time, field, value, allowed }) => {
-                LoadError::OutOfRange { time, field: of(field), value, allowed }.into()
+            Error::LoadOutOfRange { time, field, value, allowed } => {
+                Error::LoadOutOfRange { time, field: of(field), value, allowed }
             }
             other => other,
         }

@@ -25,7 +25,6 @@ mod ramp;
 mod sinusoid;
 mod step;
 
-pub use crate::error::LoadError;
 pub use function::FnHistory;
 pub use periodic::Periodic;
 pub use piecewise_linear::PiecewiseLinear;
@@ -249,7 +248,7 @@ impl Load {
         match self.validate_in(attracts) {
             Ok(()) => Ok(self),
             Err(Error::OutOfRange { field, value, allowed }) => {
-                Err(LoadError::OutOfRange { time, field, value, allowed }.into())
+                Err(Error::LoadOutOfRange { time, field, value, allowed })
             }
             Err(other) => Err(other),
         }
@@ -278,8 +277,7 @@ impl Load {
             load.validate()?;
             let first = *kind.get_or_insert(load.kind());
             if load.kind() != first {
-                let [first, second] = [first, load.kind()].map(|kind| kind.join(", "));
-                return Err(LoadError::MixedKinds { field, first, second }.into());
+                return Err(piecewise_linear::mixed(field, first, load.kind()));
             }
         }
         Ok(())
@@ -360,7 +358,7 @@ pub trait LoadHistory: Debug + Send + Sync {
     /// the end of the step that it takes, and for the next breakpoint; so a history may read a channel whose values
     /// come while the run goes on. [Events](crate::run::Run::stop_when) look within that step. A run of adaptive
     /// steps asks for loads of the whole history before its first step, and then within each step and ahead. A run
-    /// fails with [`LoadError::OutOfRange`] at a load that is not allowed.
+    /// fails with [`Error::LoadOutOfRange`] at a load that is not allowed.
     fn at(&self, t: f64) -> Load;
 
     /// The load just before time `t`; it differs from [`LoadHistory::at`] only at a jump.

@@ -1,5 +1,5 @@
 use crate::ascending::TimeTable;
-use crate::error::{Error, Result};
+use crate::error::{Error, Refusal, Result};
 use crate::load::{Load, LoadHistory};
 
 /// Loads at given times, linear in between and constant before the first and after the last. Two entries at the
@@ -18,6 +18,14 @@ use crate::load::{Load, LoadHistory};
 #[derive(Debug, Clone, PartialEq)]
 pub struct PiecewiseLinear {
     table: TimeTable<Load>,
+}
+
+/// The error of loads between which nothing is linear.
+pub(super) fn mixed(field: &'static str, first: [&str; 2], second: [&str; 2]) -> Error {
+    let [first, second] = [first, second].map(|kind| kind.join(", "));
+    let what = format!("the {field} mixes loads of different kinds ({first}; {second}), which cannot be interpolated");
+    let remedy = ": take loads of one kind, and a run for each kind";
+    Refusal::value("load_mixed_kinds", what, remedy).naming(field).into()
 }
 
 impl PiecewiseLinear {

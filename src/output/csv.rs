@@ -95,8 +95,8 @@ impl CsvHistory {
     /// A file for the history of `contact`, with `additional` columns after the standard ones.
     ///
     /// # Errors
-    /// If the file cannot be written, exists where [`Earlier`] refuses it, is no file
-    /// ([`FileError::NotAFile`](crate::FileError::NotAFile)), or no history with these columns that could be
+    /// If the file cannot be written, exists where [`Earlier`] refuses it, is no file, or no history with these
+    /// columns that could be
     /// continued; or if the name of a column is empty, already used, or contains `#`, a quote or a control character,
     /// which readers would misinterpret.
     pub fn create(

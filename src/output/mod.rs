@@ -18,8 +18,8 @@
 //! Files of an earlier run are replaced by these rules. Series and histories grow with a run: [`Earlier`] says
 //! whether a folder with frames or an existing file is refused, removed or continued. Files that are written at once
 //! (fields, stresses, pictures, animations, checkpoints) replace an existing file when the new one is complete; if
-//! the path is a link, its target is replaced. Folders, devices, pipes and sockets are never replaced:
-//! [`FileError::NotAFile`](crate::FileError::NotAFile). While a file is being written, the process ID and `.part` are appended to its
+//! the path is a link, its target is replaced. Folders, devices, pipes and sockets are never replaced. While a file is
+//! being written, the process ID and `.part` are appended to its
 //! name; a process that is killed leaves the file under that name.
 //!
 //! Where [ranks](crate::parallel) share out a contact, all of them call a function that writes it. Rank 0 writes the

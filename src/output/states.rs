@@ -9,7 +9,7 @@ use zip::ZipArchive;
 
 use crate::Grid;
 use crate::contact::Warnings;
-use crate::error::{Error, FileError, Result, poisson_ratio};
+use crate::error::{Error, Result, poisson_ratio};
 use crate::file::{in_memory, npy, open, replace};
 use crate::load::Tilt;
 use crate::output::Metadata;
@@ -128,7 +128,7 @@ fn archive(out: impl Write + Seek, states: &ElasticStates, metadata: &Metadata) 
 ///
 /// # Errors
 /// If the file cannot be read, or its arrays are no elastic states
-/// ([`FileError::Unreadable`](crate::FileError::Unreadable)).
+/// ([`Error::Unreadable`]).
 pub fn read_states(path: impl AsRef<Path>) -> Result<Arc<ElasticStates>> {
     let path = path.as_ref();
     let opened = open(path)?;
@@ -199,7 +199,7 @@ fn states_of(path: &Path, arrays: &BTreeMap<String, Vec<f64>>) -> Result<Arc<Ela
 }
 
 fn refused(path: &Path, reason: &dyn ToString) -> Error {
-    Error::File(FileError::Unreadable { file: path.display().to_string(), reason: reason.to_string(), kind: None })
+    Error::Unreadable { file: path.display().to_string(), reason: reason.to_string(), kind: None }
 }
 
 /// The arrays of real numbers in an archive, by their names.

@@ -6,7 +6,7 @@ use std::path::Path;
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 
-use crate::error::{Error, FileError, Result, count_within, least_length};
+use crate::error::{Refusal, Result, count_within, least_length};
 use crate::file::{in_memory, replace};
 use crate::plot::Canvas;
 use crate::plot::canvas::{Element, png_file};
@@ -72,7 +72,7 @@ impl Picture {
     /// are images in them, of a pixel for each cell. An existing file is replaced when the new one is complete.
     ///
     /// # Errors
-    /// [`FileError::Extension`](crate::FileError::Extension) if the extension is another, or if the file cannot be written.
+    /// If the extension is another, or if the file cannot be written.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
         let path = path.as_ref();
         match check_extension(path, &["png", "svg"])? {
@@ -122,7 +122,10 @@ impl Picture {
 /// The index of the extension of a file among those allowed, in upper or lower case.
 pub(super) fn check_extension(path: &Path, allowed: &'static [&'static str]) -> Result<usize> {
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    let unknown = || Error::File(FileError::Extension { path: path.display().to_string(), allowed });
+    let unknown = || {
+        let what = format!("{}: the extension must be .{}", path.display(), allowed.join(" or ."));
+        Refusal::file("extension", what, "").into()
+    };
     allowed.iter().position(|allowed| *allowed == extension).ok_or_else(unknown)
 }
 
@@ -131,6 +134,7 @@ debug_by!(self: Picture => size: self.size);
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::error::Error;
     use crate::plot::Color;
 
     fn plain(size: [u32; 2], value: u8) -> Picture {
@@ -174,10 +178,7 @@ mod tests {
     fn the_extension_determines_the_format() {
         for name in ["a.jpg", "png", "a", "a.svg.gz"] {
             let refused = plain([2, 2], 0).save(file(name)).unwrap_err();
-            assert!(
-                matches!(refused, Error::File(FileError::Extension { allowed: ["png", "svg"], .. })),
-                "{name}: {refused}"
-            );
+            assert_eq!(refused.code(), "extension", "{name}: {refused}");
             assert!(refused.to_string().ends_with(&format!("{name}: the extension must be .png or .svg")), "{refused}");
             assert!(!file(name).exists());
         }

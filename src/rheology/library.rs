@@ -16,7 +16,7 @@
 //! ```
 
 use crate::error::poisson_ratio;
-use crate::error::{MaterialError, Result};
+use crate::error::{Refusal, Result};
 use crate::rheology::{GeneralizedMaxwell, Material, TimeTemperature};
 
 /// The modulus of a published series.
@@ -109,7 +109,8 @@ pub fn all() -> &'static [PublishedMaterial] {
 pub fn find(name: &str) -> Result<&'static PublishedMaterial> {
     MATERIALS.iter().find(|material| material.name.eq_ignore_ascii_case(name)).ok_or_else(|| {
         let known = MATERIALS.map(|material| material.name).join(", ");
-        MaterialError::Unknown { name: name.to_owned(), known }.into()
+        let remedy = format!("; known are: {known}");
+        Refusal::value("material_unknown", format!("there is no published material named {name:?}"), &remedy).into()
     })
 }
 

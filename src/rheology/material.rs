@@ -1,8 +1,9 @@
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
+use super::series::{invalid_compliance, no_series};
 use crate::UserError;
-use crate::error::{Error, MaterialError, Result, poisson_ratio, positive, within};
+use crate::error::{Error, Result, poisson_ratio, positive, within};
 use crate::rheology::{CreepSpectrum, FitReport, RelaxationSpectrum, Rheology, Tension, is_known, may_follow};
 
 #[cfg(any(feature = "friction", feature = "sliding", feature = "states"))]
@@ -336,7 +337,7 @@ impl Material {
         let mut of_bodies = self.bodies.iter().map(|body| body.rheology.creep_compliance(0.0));
         let found = of_bodies.find(|&value| !may_follow(value, value)).map(|value| (value, value));
         let (value, previous) = found.unwrap_or((glassy, 0.0));
-        Err(self.failure().map_or(MaterialError::InvalidCompliance { time: 0.0, value, previous }.into(), Error::User))
+        Err(self.failure().map_or_else(|| invalid_compliance(0.0, value, previous), Error::User))
     }
 
     /// [`Material::contact_spectrum`], which `what` needs.
@@ -348,10 +349,6 @@ impl Material {
             }
         })
     }
-}
-
-fn no_series(what: &'static str, rheology: &dyn std::fmt::Debug) -> Error {
-    MaterialError::NoExponentialSeries { what, rheology: format!("{rheology:?}") }.into()
 }
 
 /// A bulk modulus linear in the shear modulus: B(t) = `constant` + `per_shear` G(t).

@@ -93,9 +93,6 @@ mod temperature;
 mod tension;
 mod zener;
 
-pub use crate::error::MaterialError;
-#[cfg(feature = "data")]
-pub use crate::error::{Place, TableError};
 pub use burgers::Burgers;
 pub use elastic::Elastic;
 pub use fit::{FitReport, FitSample, FitWarning, MaterialFunction};
@@ -121,6 +118,8 @@ pub use table::{Experiment, Isotherm, MasterCurve, Measurements, Units};
 pub(crate) use temperature::GAS_CONSTANT;
 #[cfg(not(feature = "temperature"))]
 pub(crate) use temperature::TemperatureHistory;
+#[cfg(feature = "temperature")]
+pub(crate) use temperature::vertical_factors;
 #[cfg(feature = "temperature")]
 pub use temperature::{ShiftedRheology, TemperatureHistory, TimeTemperature};
 pub use tension::Tension;
@@ -190,8 +189,8 @@ pub trait Rheology: Debug + Send + Sync {
     ///
     /// # Errors
     /// If the times are not in \[1e-90, 1e90\] and in order, a series must be fitted over more than 50 decades of them,
-    /// the tolerance is outside \[1e-8, 0.1\], J is not a creep compliance there, or no series reaches the tolerance
-    /// ([`MaterialError::PoorFit`]): no body of springs and dashpots has this J, or the tolerance is too small (below
+    /// the tolerance is outside \[1e-8, 0.1\], J is not a creep compliance there, or no series reaches the tolerance:
+    /// no body of springs and dashpots has this J, or the tolerance is too small (below
     /// 1e-6).
     fn series(&self, times: RangeInclusive<f64>, tolerance: f64) -> Result<CreepSeries> {
         CreepSeries::new(self, times, tolerance)

@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
-use crate::error::{MaterialError, Result};
+use crate::error::{Refusal, Result};
 use crate::rheology::{Rheology, is_known};
+use crate::rounded::rounded;
 
 /// A contact takes steps by the series, and its elastic response by J(t): they must be the same function but for such
 /// a part.
@@ -20,7 +21,13 @@ pub(super) fn series_is_creep(rheology: &Arc<dyn Rheology>) -> Result<()> {
         let [creep, series] = [rheology.creep_compliance(time), spectrum.compliance(time)];
         // what is no compliance is refused where it is used
         if (series - creep).abs() > SAME_CREEP * creep.abs() {
-            return Err(MaterialError::OtherSeries { time, creep, series }.into());
+            let [time, creep, series] = [time, creep, series].map(|number| rounded(number, 5));
+            let what = format!(
+                "Rheology::creep_spectrum is the series of another body: J({time} s) = {series} 1/Pa by the series, \
+                 but {creep} 1/Pa by Rheology::creep_compliance"
+            );
+            let remedy = "; return the series of the same function, or None";
+            return Err(Refusal::value("material_other_series", what, remedy).into());
         }
     }
     Ok(())

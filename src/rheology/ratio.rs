@@ -1,6 +1,6 @@
 //! Whether a material and a layer have the same Poisson's ratio.
 
-use crate::error::{Error, KernelError, Result};
+use crate::error::{Refusal, Result};
 use crate::rheology::Material;
 
 /// Mismatch of two Poisson's ratios that is not rounding.
@@ -9,19 +9,22 @@ const SAME_POISSON: f64 = 1e-9;
 impl Material {
     /// Rejects a layer of the Poisson's ratio `layer` that is not that of this material.
     pub(crate) fn check_ratio_of(&self, layer: f64) -> Result<()> {
-        let refused = |what| Err(Error::from(KernelError::LayerMaterial { layer, what }));
+        let refused = |what: &str| {
+            let what = format!("the layer was made for a Poisson's ratio of {layer} at all times, and {what}");
+            let remedy = ": give both one ratio (a layer takes its thickness first, then the ratio), and no body that \
+                deforms against it";
+            Err(Refusal::value("kernel_layer_material", what, remedy).into())
+        };
         let ratios: Vec<_> = self.poisson_ratios().collect();
         match ratios[..] {
             [Some(nu)] if (nu - layer).abs() <= SAME_POISSON => Ok(()),
             // to the digits that were given
-            [Some(nu)] => refused(format!(
+            [Some(nu)] => refused(&format!(
                 "the material has the constant ratio {}: give both the same, a layer after its thickness",
                 (nu * 1e9).round() / 1e9
             )),
-            [None] => {
-                refused("that of a material with an elastic bulk rises in time: take one of constant ratio".into())
-            }
-            _ => refused("a counter body deforms, too, as a half-space and in a time of its own: make it rigid".into()),
+            [None] => refused("that of a material with an elastic bulk rises in time: take one of constant ratio"),
+            _ => refused("a counter body deforms, too, as a half-space and in a time of its own: make it rigid"),
         }
     }
 }

@@ -1,8 +1,9 @@
 use std::ops::RangeInclusive;
 
-use crate::error::{Error, MaterialError, Result, within};
+use crate::error::{Error, Refusal, Result, within};
 use crate::rheology::fit::{FitReport, MaterialFunction, Sample, Search};
 use crate::rheology::{CreepSpectrum, Rheology, is_known, may_follow};
+use crate::rounded::rounded;
 
 /// The exponential series that approximates a creep compliance over a range of times, and its error.
 ///
@@ -74,7 +75,17 @@ impl CreepSeries {
         let series = search.within(&samples, FITTED_SHARE * tolerance);
         let report = FitReport::new(&series, &sampled(rheology, [first, last], CHECKED, glassy)?);
         if let Some(worst) = report.worst().filter(|worst| worst.misfit().abs() > tolerance) {
-            return Err(MaterialError::PoorFit { misfit: worst.misfit().abs(), at: worst.x, tolerance }.into());
+            let what = format!(
+                "no exponential series was found within {tolerance:e}: the error of the best is {:.1e}, at {} s",
+                worst.misfit().abs(),
+                rounded(worst.x, 3)
+            );
+            let remedy = "; raise the tolerance (Settings::series_tolerance) to at least that, 0.1 at most, or fit \
+                over shorter times";
+            return Err(Refusal::search("material_poor_fit", what, remedy)
+                .naming("error of the series")
+                .valued(worst.misfit().abs())
+                .into());
         }
         let spectrum = CreepSpectrum::new(series.constant, series.slope, &series.terms)?;
         let known_until = last.min(rheology.known_until());
@@ -151,6 +162,23 @@ fn checked<R: Rheology + ?Sized>(rheology: &R, time: f64, previous: f64) -> Resu
     if may_follow(value, previous) && (value > 0.0 || time == 0.0 && value == 0.0) {
         Ok(value)
     } else {
-        Err(rheology.failure().map_or(MaterialError::InvalidCompliance { time, value, previous }.into(), Error::User))
+        Err(rheology.failure().map_or_else(|| invalid_compliance(time, value, previous), Error::User))
     }
+}
+
+/// The error of a J(t) that no body can have.
+pub(super) fn invalid_compliance(time: f64, value: f64, previous: f64) -> Error {
+    let [at, shown, previous] = [time, value, previous].map(|number| rounded(number, 5));
+    let what = format!("creep compliance J({at} s) = {shown} 1/Pa is not allowed");
+    let range = format!(": it must be finite, ≥ 0 (> 0 after t = 0) and non-decreasing (J was {previous} before)");
+    let refusal = Refusal::value("material_invalid_compliance", what, &range).naming("creep compliance").valued(value);
+    refusal.allowing("finite, ≥ 0 (> 0 after t = 0) and non-decreasing").into()
+}
+
+/// The error of a rheology without an exact exponential series, which `what` needs.
+pub(super) fn no_series(what: &'static str, rheology: &dyn std::fmt::Debug) -> Error {
+    let what = format!("{what} needs an exponential series, and {rheology:?} has no exact one");
+    let remedy = ": name the times to fit one over, with Builder::times (first and last) or Builder::times_of (a load \
+        history and its end), or fit one with Rheology::series or Material::fitted";
+    Refusal::value("material_no_exponential_series", what, remedy).into()
 }

@@ -304,7 +304,7 @@ impl<'a, C: Contact> Run<'a, C> {
     /// (from the step on in which the bodies touch); if the fixed step is not finite and positive or too short to
     /// change the time, the tolerance is out of range or requires steps too short to change the time, the history
     /// returns an invalid load at any time that is evaluated
-    /// ([`LoadError::OutOfRange`](crate::load::LoadError::OutOfRange); [`LoadHistory::at`] states when a run
+    /// ([`Error::LoadOutOfRange`](crate::Error::LoadOutOfRange); [`LoadHistory::at`] states when a run
     /// evaluates it), or a step fails. The contact then keeps its state after the last successful step, and the call
     /// may be repeated.
     ///

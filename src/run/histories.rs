@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::error::{LoadError, Result};
+use crate::error::{Refusal, Result};
 use crate::load::{Load, LoadHistory};
 use crate::run::{Contact, OwnedOrBorrowed};
 
@@ -59,7 +59,9 @@ impl<'a> Histories<'a> {
         self.each().chain(along.iter().map(|along| &**along)).try_fold(f64::INFINITY, |first, history| {
             let next = history.next_breakpoint(now).unwrap_or(f64::INFINITY);
             if next <= now || next.is_nan() {
-                return Err(LoadError::InvalidBreakpoint { after: now, breakpoint: next }.into());
+                let what = format!("the load history returned {next} s as the first breakpoint after t = {now} s");
+                let remedy = ": it must be later; compare times with the breakpoints themselves (guide::own_models)";
+                return Err(Refusal::value("load_invalid_breakpoint", what, remedy).into());
             }
             Ok(first.min(next))
         })

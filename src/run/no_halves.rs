@@ -1,7 +1,7 @@
 //! In place of the steps of surfaces that attract each other, where their room is not compiled.
 
 use crate::contact::{State, Step, ViscoelasticContact};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, missing};
 use crate::hereditary::{StepContext, TimeError};
 use crate::run::adaptive_step::{StepSearch, Tried};
 
@@ -28,7 +28,7 @@ impl StepSearch<'_> {
         _: TimeError,
         _: f64,
     ) -> Result<Tried> {
-        Err(Error::Missing { part: "attraction" })
+        Err(missing("attraction"))
     }
 }
 

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use crate::contact::checkpoint::{Besides, NO_RUN, malformed};
 use crate::contact::{StepReport, ViscoelasticContact};
-use crate::error::{CheckpointError, Result};
+use crate::error::{Refusal, Result};
 use crate::run::Contact;
 use crate::run::autosave::Autosave;
 use crate::run::follow::Run;
@@ -55,8 +55,7 @@ impl ViscoelasticContact {
     /// [`Settings::window`](crate::contact::Settings::window) set to false.
     ///
     /// # Errors
-    /// If the file cannot be written, or there is something other than a file at `path`
-    /// ([`FileError::NotAFile`](crate::FileError::NotAFile)).
+    /// If the file cannot be written, or there is something other than a file at `path`.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
         self.save_with::<(Progress, StepControl)>(path.as_ref(), None)
     }
@@ -103,7 +102,7 @@ impl ViscoelasticContact {
     /// file. Each rank reads its rows and checks its part of the file. An error of one rank is an error on all
     /// ([`RanksError::Failed`](crate::parallel::RanksError::Failed)). Ranks cannot resume from a window of the grid
     /// ([`Settings::window`](crate::contact::Settings::window)), nor after an indenter has moved or a load has broken
-    /// the symmetry of the scene ([`CheckpointError::OtherScene`](crate::contact::CheckpointError::OtherScene)).
+    /// the symmetry of the scene.
     pub fn resume(&mut self, path: impl AsRef<Path>) -> Result<()> {
         let run = self.resume_with(path.as_ref(), &check)?;
         self.saved_run = run.map(|run| Arc::new(run) as _);
@@ -182,9 +181,9 @@ impl Besides for (Progress, StepControl) {
     const KIND: &'static str = "in space";
 }
 
-fn check(run: Option<&(Progress, StepControl)>) -> Result<(), CheckpointError> {
+fn check(run: Option<&(Progress, StepControl)>) -> Result<(), Refusal> {
     match run {
-        Some((progress, control)) if !progress.fits() || !control.fits() => malformed(NO_RUN),
+        Some((progress, control)) if !progress.fits() || !control.fits() => Err(malformed(NO_RUN)),
         _ => Ok(()),
     }
 }

@@ -12,10 +12,11 @@ use super::creep::Creep;
 use super::layer_on_base::LayerOnBase;
 use super::operator::{Coefficients, MovingBodies};
 use crate::contact::Warnings;
-use crate::error::{Result, SlidingError};
+use crate::error::{Error, Refusal, Result};
 use crate::fft::{real_rows, wave_numbers};
 use crate::kernel::InfluenceKernel;
 use crate::numeric::EULER;
+use crate::rounded::rounded;
 
 /// A modulus that gains energy by a smaller part of itself is rounded.
 const ROUNDING: f64 = 1e-12;
@@ -67,6 +68,19 @@ impl Bodies {
         Ok(usize::from(velocity[0] == 0.0))
     }
 
+    /// The error of bodies whose modulus E′ + i E″ at a frequency \[rad/s\] is in the other convention, or no number.
+    fn not_passive(&self, omega: f64) -> Error {
+        let Complex64 { re, im } = self.creep.at(omega);
+        let [re, im] = [re, im].map(|part| rounded(part / (re * re + im * im), 5));
+        let what = format!(
+            "at {} rad/s the complex modulus is {re} + {im} i Pa: in the convention E' + i E'' bodies have E' > 0 and \
+             E'' >= 0",
+            rounded(omega, 5)
+        );
+        let remedy = "; check signs, units and frequencies of the moduli";
+        Refusal::value("sliding_not_passive", what, remedy).naming("frequency").valued(omega).into()
+    }
+
     fn over_period(&self, velocity: [f64; 2]) -> Result<MovingBodies> {
         let cells @ [n1, _] = self.kernel.grid().cells();
         let (mut factors, mut loss) = (Vec::new(), [Vec::new(), Vec::new()]);
@@ -84,8 +98,7 @@ impl Bodies {
                 } / (signs[0].len() * signs[1].len()) as f64;
                 let gains = own.im * omega.signum() < -ROUNDING * own.norm();
                 if !(own.re > 0.0 && own.im.is_finite() && !gains || own == Complex64::ZERO) {
-                    let Complex64 { re, im } = self.creep.at(omega.abs());
-                    return Err(SlidingError::NotPassive { omega: omega.abs(), compliance: [re, im] }.into());
+                    return Err(self.not_passive(omega.abs()));
                 }
                 factor += own;
                 (0..2).for_each(|axis| lost[axis] += q[axis] * own.im);

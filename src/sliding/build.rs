@@ -10,13 +10,14 @@ use super::layer_on_base::{LayerOnBase, THINNEST};
 use super::{SteadySliding, coverage, gmres};
 use crate::contact::{Builder, Frame, Limits, Scene, Warnings};
 use crate::equilibrium::{Ground, Held, Indenter, Region};
-use crate::error::{Result, SlidingError, Special};
+use crate::error::{Refusal, Result, Special};
 use crate::fields::View;
 use crate::geometry::{Gap, Missed};
 use crate::kernel::HalfSpace;
 use crate::memory;
 use crate::motion::CounterMotion;
 use crate::rheology::{CreepSpectrum, Elastic, Material};
+use crate::rounded::rounded;
 
 /// Whether a gap changes at one place along a periodic axis by far more than anywhere else: a
 /// height map that does not repeat has a step where its end meets its beginning, wherever its
@@ -100,7 +101,20 @@ fn on_base(scene: &Scene, creep: &Creep, base: &Material) -> Result<LayerOnBase>
     let ends = (0..2).filter(|&axis| !kernel.periodic_axes()[axis]);
     let (thickness, length) = (layer.thickness(), ends.map(|axis| grid.lengths()[axis]).fold(0.0, f64::max));
     if length > THINNEST * thickness {
-        return Err(SlidingError::ThinLayer { length, thickness, longest: THINNEST * thickness }.into());
+        let what = format!(
+            "the grid is {} m long, {} times the thickness of a layer on a base that creeps otherwise, of which 64 \
+             are covered",
+            rounded(length, 4),
+            rounded(length / thickness, 3)
+        );
+        let remedy = format!(
+            ": shorten the grid to {} m, or take a body that is periodic along both axes",
+            rounded(THINNEST * thickness, 4)
+        );
+        return Err(Refusal::unsupported("sliding_thin_layer", what, &remedy)
+            .naming("length of the grid")
+            .valued(length)
+            .into());
     }
     Ok(LayerOnBase { layer, own: creep.clone(), base: series(base)?, kernel: kernel.clone() })
 }
@@ -139,8 +153,7 @@ impl Builder {
     /// # Errors
     /// As [`Builder::build_sliding`]; if the kernel belongs to another layer, the base has no
     /// series, or flows; if the body is not periodic along both axes, and a side of the grid is
-    /// more than 64 times as long as the layer is thick
-    /// ([`SlidingError::ThinLayer`](crate::sliding::SlidingError::ThinLayer)).
+    /// more than 64 times as long as the layer is thick.
     pub fn build_sliding_on(self, base: Material) -> Result<SteadySliding> {
         self.sliding(Some(base), None)
     }
@@ -152,8 +165,7 @@ impl Builder {
     ///
     /// # Errors
     /// As [`Builder::build_sliding`]; if the body is not periodic along both axes, or there is a
-    /// counter-body. [`SteadySliding::at`] fails where E′ is not positive, or E″ is negative
-    /// ([`SlidingError::NotPassive`](crate::sliding::SlidingError::NotPassive)).
+    /// counter-body. [`SteadySliding::at`] fails where E′ is not positive, or E″ is negative.
     pub fn build_sliding_by(
         mut self,
         modulus: impl Fn(f64) -> Complex64 + Send + Sync + 'static,

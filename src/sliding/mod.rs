@@ -22,7 +22,6 @@ mod report;
 mod search;
 mod sweep;
 
-pub use crate::error::SlidingError;
 pub use crate::motion::CounterMotion;
 pub use report::SlidingReport;
 pub use sweep::{SlidingSweep, SlidingTable, SweptState};
@@ -34,10 +33,11 @@ use crate::contact::{Edge, Figures, Scene, Warnings};
 use crate::equilibrium::constraints::{find_free_motions, validate_loads};
 use crate::equilibrium::pressed::Pressed;
 use crate::equilibrium::{Held, Request, Trial};
-use crate::error::{Error, Result, StepError, finite};
+use crate::error::{Error, Refusal, Result, StepError, finite};
 use crate::fields::{About, Fields, Surface, View};
 use crate::geometry::Missed;
 use crate::load::Load;
+use crate::rounded::rounded;
 use crate::solver::{Freedom, RigidMotion};
 use bodies::Bodies;
 use contact_problem::{FoundMotion, SlidingProblem};
@@ -105,7 +105,17 @@ fn passive_drag(bodies: &MovingBodies, spectrum: &[f64], velocity: [f64; 2]) -> 
         let driving = power / (along[0] * along[0] + along[1] * along[1]);
         return Ok([0, 1].map(|axis| drag[axis] - driving * along[axis]));
     }
-    Err(SlidingError::Drives { velocity, part }.into())
+    let what = format!(
+        "{} the bodies would drive the motion, by {} of the sum of what their waves resist and drive with: cells \
+         longer than a layer is thick do not resolve its losses",
+        at_velocity(velocity),
+        rounded(part, 3)
+    );
+    Err(Refusal::search("sliding_drives", what, ": refine the mesh").naming("part of the power").valued(part).into())
+}
+
+fn at_velocity(velocity: [f64; 2]) -> String {
+    format!("at a velocity of ({}, {}) m/s", rounded(velocity[0], 5), rounded(velocity[1], 5))
 }
 
 impl SteadySliding {
@@ -121,10 +131,8 @@ impl SteadySliding {
     /// If the velocity is not finite, or follows neither axis of a half-space; if the load is a
     /// spring, cannot be balanced, tilts a periodic body, or is an approach beyond full contact, or
     /// one in line contact whose datum is too near; if a modulus does not resist or gives energy
-    /// away ([`SlidingError::NotPassive`]), or the bodies drive the motion
-    /// ([`SlidingError::Drives`]); if contact reaches the edge of the grid, or the state is not
-    /// found ([`SlidingError::NotConverged`]) or lost in rounding ([`SlidingError::Rounding`]), or
-    /// another thread ends the search. The state found last is then kept.
+    /// away, or the bodies drive the motion; if contact reaches the edge of the grid, or the state is not
+    /// found or lost in rounding, or another thread ends the search. The state found last is then kept.
     pub fn at(&mut self, velocity: [f64; 2], load: Load) -> Result<SlidingReport> {
         finite("velocity along x1", velocity[0])?;
         finite("velocity along x2", velocity[1])?;
@@ -154,10 +162,21 @@ impl SteadySliding {
             return Err(Error::Cancelled { what: "a steady motion" });
         }
         if !converged && rounding > tolerance {
-            return Err(SlidingError::Rounding { velocity, rounding, tolerance }.into());
+            let what = format!(
+                "{} the rounding of the displacement is {rounding:.1e} of the gap that the contact closes, where \
+                 {tolerance:.1e} is allowed",
+                at_velocity(velocity)
+            );
+            let remedy = ": take a lower velocity, bodies that creep less, or a greater Settings::tolerance";
+            return Err(Refusal::search("sliding_rounding", what, remedy).into());
         }
         if !converged {
-            return Err(SlidingError::NotConverged { velocity, sets, residual, tolerance }.into());
+            let what = format!(
+                "{} {sets} sets of cells left a residual of {residual:.1e}, where {tolerance:.1e} is allowed",
+                at_velocity(velocity)
+            );
+            let remedy = ": come from a velocity nearby, or allow a greater Settings::tolerance";
+            return Err(Refusal::search("sliding_not_converged", what, remedy).into());
         }
         self.check_edge(&pressure)?;
         let (cell_area, transforms) = (grid.cell_area(), bodies.transforms);

@@ -4,10 +4,11 @@ use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
 
 use super::{SlidingReport, SteadySliding};
-use crate::error::{Error, MaterialError, Result};
+use crate::error::{Error, Result};
 use crate::load::Load;
 use crate::parallel::{cut, fork};
 use crate::rheology::TimeTemperature;
+use crate::rheology::vertical_factors;
 
 /// Velocities, loads and temperatures of steady motions, for [`SteadySliding::sweep`].
 #[derive(Debug, Clone)]
@@ -74,8 +75,7 @@ impl SteadySliding {
     ///
     /// # Errors
     /// As [`SteadySliding::at`], [`TimeTemperature::shift_factor`] and [`TimeTemperature::vertical_factor`]; if the
-    /// law has vertical factors and the contact a second body, a base or a bulk, which does not follow it
-    /// ([`MaterialError::VerticalFactors`]).
+    /// law has vertical factors and the contact a second body, a base or a bulk, which does not follow it.
     pub fn sweep(&mut self, sweep: &SlidingSweep) -> Result<SlidingTable> {
         self.sweep_with(sweep, |_, _| ControlFlow::Continue(()))
     }
@@ -103,7 +103,7 @@ impl SteadySliding {
         };
         let in_proportion = self.bodies.layer.is_none() && self.scene.material.is_one_body_in_proportion();
         if !in_proportion && shifts.iter().any(|(_, _, vertical)| *vertical != 1.0) {
-            return Err(MaterialError::VerticalFactors { what: "a sweep over temperatures" }.into());
+            return Err(vertical_factors("a sweep over temperatures"));
         }
         let chains: Vec<_> =
             shifts.iter().flat_map(|&shift| sweep.loads.iter().map(move |&load| (shift, load))).collect();

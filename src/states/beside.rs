@@ -8,10 +8,11 @@
 
 use std::sync::Arc;
 
+use super::does_not_superpose;
 use crate::contact::ViscoelasticContact;
 use crate::elastic::ElasticContact;
 use crate::equilibrium::Ground;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::hereditary::Interpolant;
 use crate::load::{Load, LoadHistory, Tilt};
 use crate::states::contacts::{Contacts, SolvedContact};
@@ -65,7 +66,7 @@ pub(crate) struct FoundPressure {
 impl FieldsByLevels {
     /// For a run from undisturbed bodies at a `start`, with steps of this kind; `None` where levels give no field:
     /// tilts change, or are free under a given approach, the material has no series, or nothing presses.
-    /// [`StatesError::Shrinks`](crate::states::StatesError::Shrinks) where an elastic contact shrinks as its load
+    /// [`Error::Shrinks`](crate::Error::Shrinks) where an elastic contact shrinks as its load
     /// grows.
     pub(crate) fn new(
         contact: &ViscoelasticContact,
@@ -132,7 +133,7 @@ impl FieldsByLevels {
                 let fewer = self.repeated.on(self.curve.through(2, first)?);
                 of_curve = of_curve.max(match fewer.at(history, at.0, at.1) {
                     // curves through fewer contacts may leave the order of levels
-                    Err(Error::States(_) | Error::Step(_)) => f64::INFINITY,
+                    Err(error) if does_not_superpose(&error) => f64::INFINITY,
                     other => found.distance(&mut other?)?,
                 });
             }

@@ -2,9 +2,10 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
+use super::elastic::other_tilt;
 use crate::contact::{Estimated, Figures, Limits, StepReport, Warnings};
 use crate::elastic::ElasticContact;
-use crate::error::{Result, StatesError, non_negative};
+use crate::error::{Result, non_negative};
 use crate::hereditary::{ExponentialRule, Interpolant};
 use crate::load::Load;
 use crate::rheology::{Material, TemperatureHistory};
@@ -152,7 +153,7 @@ impl StatesContact {
     /// it adds.
     ///
     /// # Errors
-    /// [`StatesError::NoScene`] if the states were read from a file or given as a table; those of
+    /// If the states were read from a file or given as a table; those of
     /// [`Builder::build`](crate::contact::Builder::build).
     pub fn with_exact_states(mut self) -> Result<StatesContact> {
         let elastic = self.scene.swept.elastic_contact()?;
@@ -164,7 +165,7 @@ impl StatesContact {
     /// to its present load and a release. A body that tilts freely under no force rests in the limit of small forces.
     ///
     /// # Errors
-    /// If `dt` is negative or not finite, or the load invalid; [`StatesError`] if the load has other tilts or another
+    /// If `dt` is negative or not finite, or the load invalid; if the load has other tilts or another
     /// load point than the sweep, needs a state beyond it, or a group of levels leaves its order; if `dt` = 0 and the
     /// body has no elastic response, or the time under load is beyond the material's. A step that fails changes
     /// nothing but, with exact states, the states between which it interpolates.
@@ -282,8 +283,7 @@ impl StatesContact {
 
     pub(super) fn demand(&self, load: Load) -> Result<Demand> {
         if load.tilt() != self.states.tilt {
-            let swept = Load::Force { normal: 0.0, tilt: self.states.tilt }.to_string();
-            return Err(StatesError::OtherTilt { swept, given: load.to_string() }.into());
+            return Err(other_tilt(self.states.tilt, load));
         }
         let rest = self.states.rest.approach;
         match load {

@@ -2,7 +2,7 @@
 
 use crate::contact::{Figures, Warnings};
 use crate::elastic::ElasticContact;
-use crate::error::{Result, StatesError};
+use crate::error::{Error, Refusal, Result};
 use crate::load::{Load, Tilt};
 use crate::states::curve::{ElasticState, ElasticStates};
 use crate::states::pressed::Pressed;
@@ -39,6 +39,16 @@ pub(super) fn state_under(contact: &mut ElasticContact, load: Load) -> Result<So
     Ok(Solved { state, pressure: Pressed::new(fields.pressure()) })
 }
 
+/// The error of a load whose tilts are not those of a sweep.
+pub(super) fn other_tilt(swept: [Tilt; 2], given: Load) -> Error {
+    let swept = Load::Force { normal: 0.0, tilt: swept };
+    let what = format!(
+        "the states were swept for {swept}, and {given} was given: a load point or a prescribed tilt that changes is \
+         no superposition of elastic states"
+    );
+    Refusal::unsupported("states_other_tilt", what, "; step it with ViscoelasticContact").into()
+}
+
 /// The point about which a body tilts freely, along each axis along which it does.
 pub(super) fn free_points(tilt: [Tilt; 2]) -> [Option<f64>; 2] {
     tilt.map(|tilt| if let Tilt::Free { at } = tilt { Some(at) } else { None })
@@ -47,6 +57,9 @@ pub(super) fn free_points(tilt: [Tilt; 2]) -> [Option<f64>; 2] {
 impl ElasticStates {
     /// An elastic contact of unit compliance on this surface, undisturbed.
     pub(super) fn elastic_contact(&self) -> Result<ElasticContact> {
-        self.scene.as_ref().ok_or(StatesError::NoScene)?.clone().build()
+        let what = "the states hold no surface to solve a contact on";
+        let remedy = ": fields need the states of a Sweep of this process";
+        let none = || Refusal::unsupported("states_no_scene", what, remedy);
+        self.scene.as_ref().ok_or_else(none)?.clone().build()
     }
 }

@@ -13,7 +13,7 @@ impl StatesContact {
     /// for each cell of the grid, to the accuracy of the sweep.
     ///
     /// # Errors
-    /// [`StatesError::NoPressures`](crate::states::StatesError::NoPressures) if none were kept.
+    /// If none were kept.
     pub fn pressure(&self) -> Result<Vec<f64>> {
         self.states.superposed_field(self.tractions())
     }
@@ -27,7 +27,7 @@ impl StatesContact {
     /// [`Run::fields_to`](crate::run::Run::fields_to).
     ///
     /// # Errors
-    /// If the accuracy is outside \[0, 0.1\]; [`StatesError::NoScene`](crate::states::StatesError::NoScene) if the states were read from a file or given
+    /// If the accuracy is outside \[0, 0.1\]; if the states were read from a file or given
     /// as a table; as
     /// [`ElasticContact::solve`](crate::elastic::ElasticContact::solve).
     pub fn fields(&self, accuracy: f64) -> Result<KeptFields> {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::contact::StepReport;
-use crate::error::{Error, Result, StatesError, within};
+use crate::error::{Error, Refusal, Result, within};
 use crate::hereditary::Interpolant;
 use crate::kernel::HalfSpace;
 use crate::load::along::LateralWork;
@@ -12,6 +12,21 @@ use crate::rheology::Material;
 use crate::states::contact::StatesContact;
 use crate::states::coulomb::Friction;
 use crate::states::levels::{Demand, Shear};
+
+/// The error of bodies that do not respond alike to normal and to tangential loads.
+fn other_kernel() -> Error {
+    let what = "these bodies respond to loads along the surface in another way than to normal ones: friction on \
+        elastic \
+        states is exact in line contact and at Poisson's ratio 0, where ν = ½ or two bodies are of one material";
+    let remedy = "; with_estimated_friction takes half-spaces of any constant Poisson's ratio";
+    Refusal::unsupported("states_other_kernel", what, remedy).into()
+}
+
+/// The error of a load along the surface without friction.
+fn no_friction() -> Error {
+    let what = "the contact has no friction that could carry a load along its surface";
+    Refusal::unsupported("states_no_friction", what, ": call with_friction first").into()
+}
 
 /// # Friction
 ///
@@ -48,13 +63,13 @@ impl StatesContact {
     /// ```
     ///
     /// # Errors
-    /// If the coefficient is not above 0, or more than 10⁶; [`StatesError::OtherKernel`] if bodies respond to tangential
+    /// If the coefficient is not above 0, or more than 10⁶; if bodies respond to tangential
     /// loads in another way: [`StatesContact::with_estimated_friction`] takes them.
     pub fn with_friction(self, coefficient: f64) -> Result<StatesContact> {
         let (material, is_line) = (&self.scene.material, self.is_line()?);
         let has = |wanted: f64| material.poisson_ratios().all(|ratio| ratio == Some(wanted));
         if !(is_line || has(0.0)) || !(has(0.5) || material.is_pair()?) {
-            return Err(StatesError::OtherKernel.into());
+            return Err(other_kernel());
         }
         self.rubbing(coefficient, 1.0)
     }
@@ -65,22 +80,21 @@ impl StatesContact {
     /// 0.9 f P; that of a rough surface by 1.7 % in the median of 12, at most 8 %.
     ///
     /// # Errors
-    /// If the coefficient is not above 0, or more than 10⁶; [`StatesError::OtherKernel`] of layers and other kernels than
-    /// those of half-spaces, and of bodies whose Poisson's ratio changes with time. States of a table or a file, which
+    /// If the coefficient is not above 0, or more than 10⁶; for layers and other kernels than
+    /// those of half-spaces, and for bodies whose Poisson's ratio changes with time. States of a table or a file, which
     /// do not tell their kernel, are taken for those of half-spaces.
     pub fn with_estimated_friction(self, coefficient: f64) -> Result<StatesContact> {
         let (material, is_line) = (&self.scene.material, self.is_line()?);
         let mut sums = [0.0; 2];
         for body in material.each() {
-            let poisson = body.poisson_ratios().next().flatten().ok_or(StatesError::OtherKernel)?;
+            let poisson = body.poisson_ratios().next().flatten().ok_or_else(other_kernel)?;
             let ratio = if is_line { 1.0 } else { 0.5 * (2.0 - poisson) / (1.0 - poisson) };
             // a body of no glassy compliance is as soft as it creeps
             let compliance = body.contact_compliance(0.0).max(f64::MIN_POSITIVE);
             sums = [sums[0] + ratio * compliance, sums[1] + compliance];
         }
         // 3/4 at ν = −1 to 3/2 at ν = ½, unless the sums are no numbers
-        let ratio =
-            Some(sums[0] / sums[1]).filter(|ratio| (0.5..2.0).contains(ratio)).ok_or(StatesError::OtherKernel)?;
+        let ratio = Some(sums[0] / sums[1]).filter(|ratio| (0.5..2.0).contains(ratio)).ok_or_else(other_kernel)?;
         self.rubbing(coefficient, ratio)
     }
 
@@ -97,9 +111,9 @@ impl StatesContact {
     /// then slips at the edge, the less the shorter the steps are.
     ///
     /// # Errors
-    /// [`StatesError::NoFriction`] without friction.
+    /// If the contact has no friction.
     pub fn with_slip_from_start(mut self) -> Result<StatesContact> {
-        self.scene.friction.as_ref().ok_or(StatesError::NoFriction)?;
+        self.scene.friction.as_ref().ok_or_else(no_friction)?;
         self.levels.slip_from_start();
         Ok(self)
     }
@@ -108,12 +122,12 @@ impl StatesContact {
     /// forms, tables and files, are those of half-spaces.
     fn is_line(&self) -> Result<bool> {
         if self.states.poisson.is_some() {
-            return Err(StatesError::OtherKernel.into());
+            return Err(other_kernel());
         }
         let Some(scene) = self.states.scene.as_ref() else { return Ok(false) };
         match scene.half_space_below() {
             Some(body) => Ok(matches!(body, HalfSpace::Line { .. })),
-            None => Err(StatesError::OtherKernel.into()),
+            None => Err(other_kernel()),
         }
     }
 
@@ -123,9 +137,9 @@ impl StatesContact {
     /// acts along the surface.
     ///
     /// # Errors
-    /// [`StatesError::NoFriction`] without friction.
+    /// If the contact has no friction.
     pub fn sheared_by(mut self, history: impl LoadHistory + 'static) -> Result<StatesContact> {
-        let friction = Arc::make_mut(&mut self.scene).friction.as_mut().ok_or(StatesError::NoFriction)?;
+        let friction = Arc::make_mut(&mut self.scene).friction.as_mut().ok_or_else(no_friction)?;
         friction.history = Some(Arc::new(history));
         Ok(self)
     }
@@ -152,8 +166,8 @@ impl StatesContact {
     /// [`StatesContact::step`] with a load along the surface, as those of [`StatesContact::sheared_by`].
     ///
     /// # Errors
-    /// As [`StatesContact::step`]; [`StatesError::NoFriction`] without friction, [`StatesError::Slides`] if the force
-    /// is more than f P, and if a load along the surface has a tilt.
+    /// As [`StatesContact::step`]; if there is no friction, [`Error::Slides`] if the force is more than f P, and if a
+    /// load along the surface has a tilt.
     pub fn step_sheared(&mut self, dt: f64, load: Load, along: Load) -> Result<StepReport> {
         self.step_along(self.time() + dt, dt, load, Some(along))
     }
@@ -162,7 +176,7 @@ impl StatesContact {
     /// time, before it at the end of a step.
     pub(super) fn along(&self, time: f64, dt: f64, given: Option<Load>) -> Result<Option<Demand>> {
         let Some(friction) = &self.scene.friction else {
-            return if given.is_some() { Err(StatesError::NoFriction.into()) } else { Ok(None) };
+            return if given.is_some() { Err(no_friction()) } else { Ok(None) };
         };
         let load = match (given, &friction.history) {
             (Some(load), _) => load.validate().map(|()| load),

@@ -35,7 +35,7 @@ impl StatesContact {
     /// ```
     ///
     /// # Errors
-    /// [`StatesError::NoScene`](crate::states::StatesError::NoScene) if the states were read from a file or given as
+    /// If the states were read from a file or given as
     /// a table; as [`ElasticContact::solve`](crate::elastic::ElasticContact::solve) and
     /// [`Fields::approach_gradient`](crate::fields::Fields::approach_gradient).
     pub fn approach_gradient(&self) -> Result<Vec<f64>> {

@@ -66,7 +66,6 @@ mod solved_curve;
 mod superposed;
 mod sweep;
 
-pub use crate::error::StatesError;
 pub use crate::load::along::LateralWork;
 pub use contact::StatesContact;
 pub use curve::{ElasticState, ElasticStates};
@@ -82,7 +81,13 @@ use crate::error::{Error, Result};
 /// Nothing where elastic states do not cover a scene.
 pub(crate) fn none_if_not_covered<T>(found: Result<Option<T>>) -> Result<Option<T>> {
     match found {
-        Err(Error::States(_) | Error::Step(_)) => Ok(None),
+        Err(error) if does_not_superpose(&error) => Ok(None),
         other => other,
     }
+}
+
+/// Whether a step failed, or elastic states do not cover it.
+fn does_not_superpose(error: &Error) -> bool {
+    let is_step = matches!(error, Error::Step(_) | Error::Shrinks { .. } | Error::Slides { .. });
+    is_step || error.code().starts_with("states_")
 }

@@ -1,6 +1,6 @@
 //! The pressure of an elastic state.
 
-use crate::error::{Result, StatesError};
+use crate::error::{Error, Result};
 
 /// Greatest fall of a pressure, over the greatest pressure, that is always taken for an error of the solver.
 const ALLOWED_FALL: f64 = 1e-4;
@@ -34,7 +34,7 @@ impl Pressed {
     /// by more than this share of the greatest.
     pub(crate) fn check_growth(&self, after: &Pressed, levels: [f64; 2], allowed: f64) -> Result<()> {
         let fall = self.greatest_fall_to(after);
-        if fall > allowed { Err(StatesError::Shrinks { levels, fall, allowed }.into()) } else { Ok(()) }
+        if fall > allowed { Err(Error::Shrinks { levels, fall, allowed }) } else { Ok(()) }
     }
 
     /// Greatest fall of the pressure of a cell from here to `after`, over the greatest pressure there.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::contact::StepReport;
-use crate::error::{Error, Result, StatesError};
+use crate::error::{Error, Result};
 use crate::load::{Load, LoadHistory};
 use crate::rheology::TemperatureHistory;
 use crate::run::control::Control;
@@ -86,7 +86,7 @@ impl Contact for StatesContact {
     }
 
     fn is_beyond(&self, error: &Error) -> bool {
-        matches!(error, Error::States(StatesError::Slides { .. }))
+        matches!(error, Error::Slides { .. })
     }
 
     fn is_known_until(&self, end: f64) -> Result<()> {

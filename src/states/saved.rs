@@ -7,10 +7,11 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use crate::contact::checkpoint::format::damaged;
 use crate::contact::checkpoint::format::{Input, Output};
 use crate::contact::checkpoint::scene::{of_rule, of_text};
 use crate::contact::checkpoint::{NO_RUN, check_clocks, malformed};
-use crate::error::{CheckpointError, Error, Result};
+use crate::error::{Error, Refusal, Result};
 use crate::file::{in_memory, replace};
 use crate::run::doubled::SavedRun;
 use crate::states::contact::StatesContact;
@@ -86,7 +87,7 @@ impl StatesContact {
         self.resume_from(Path::new("bytes in memory"), Input::begin(Cursor::new(bytes)))
     }
 
-    fn resume_from(&mut self, path: &Path, file: Result<Input<impl Read + Seek>, CheckpointError>) -> Result<()> {
+    fn resume_from(&mut self, path: &Path, file: Result<Input<impl Read + Seek>, Refusal>) -> Result<()> {
         let saved = file.and_then(|file| self.read(file));
         let saved = saved.map_err(|cause| Error::Checkpoint { path: path.to_owned(), cause })?;
         [self.time, self.reduced_time, self.undisturbed_until] = saved.times;
@@ -95,9 +96,9 @@ impl StatesContact {
         Ok(())
     }
 
-    fn read(&self, mut file: Input<impl Read + Seek>) -> Result<Saved<'static>, CheckpointError> {
+    fn read(&self, mut file: Input<impl Read + Seek>) -> Result<Saved<'static>, Refusal> {
         if !file.is_intact() {
-            return Err(CheckpointError::Damaged);
+            return Err(damaged());
         }
         let saved: Saved<'static> = file.contents(&self.parts())?;
         let [time, reduced, undisturbed_until] = saved.times;
@@ -106,11 +107,11 @@ impl StatesContact {
             || !saved.times.iter().all(|time| time.is_finite() && *time >= 0.0)
             || saved.prescribed.is_some_and(|approach| !approach.is_finite())
         {
-            return malformed("levels that no contact has");
+            return Err(malformed("levels that no contact has"));
         }
         if saved.run.as_ref().is_some_and(|(progress, record)| !progress.fits() || !record.fits() || !record.own.fits())
         {
-            return malformed(NO_RUN);
+            return Err(malformed(NO_RUN));
         }
         check_clocks(time, reduced, self.scene.temperature.as_ref())?;
         Ok(saved)

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::error::{Error, Result};
+use crate::error::{Result, of_other_contact};
 use crate::states::contact::StatesContact;
 
 impl StatesContact {
@@ -26,7 +26,7 @@ impl StatesContact {
     /// If the snapshot was made of another contact; a contact and its clones may exchange theirs.
     pub fn restore(&mut self, snapshot: &StatesContact) -> Result<()> {
         if !snapshot.is_of(self) {
-            return Err(Error::OF_OTHER_CONTACT);
+            return Err(of_other_contact());
         }
         self.copy_from(snapshot);
         Ok(())

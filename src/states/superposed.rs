@@ -1,12 +1,14 @@
 //! Sums over the states of a sweep: fields of the pressures that it kept, and work.
 
-use crate::error::{Result, StatesError};
+use crate::error::{Refusal, Result};
 use crate::states::curve::ElasticStates;
 
 impl ElasticStates {
     /// Σ w_i (p_e(l_i) − p_e(l_i−1)) of the pressures that the sweep kept.
     pub(super) fn superposed_field(&self, tractions: impl Iterator<Item = (f64, f64)>) -> Result<Vec<f64>> {
-        let grid = self.grid.as_ref().filter(|_| !self.pressures.is_empty()).ok_or(StatesError::NoPressures)?;
+        let remedy = ": call Sweep::keep_pressures before the sweep";
+        let none = || Refusal::unsupported("states_no_pressures", "the states hold no pressures", remedy);
+        let grid = self.grid.as_ref().filter(|_| !self.pressures.is_empty()).ok_or_else(none)?;
         // by the share of each state in it
         let mut shares = vec![0.0; self.pressures.len()];
         let mut last = 0.0;

@@ -5,10 +5,11 @@ use std::ops::ControlFlow;
 use std::rc::Rc;
 use std::sync::Arc;
 
+use super::elastic::other_tilt;
 use crate::Grid;
 use crate::contact::Settings;
 use crate::elastic::{ElasticBuilder, ElasticContact};
-use crate::error::{Error, Result, StatesError, count_within, finite, positive, within};
+use crate::error::{Error, Result, count_within, finite, positive, within};
 use crate::geometry::Geometry;
 use crate::kernel::{InfluenceKernel, Layer};
 use crate::load::{Load, Tilt, load_point};
@@ -107,7 +108,7 @@ impl Sweep {
     /// Runs the sweep.
     ///
     /// # Errors
-    /// Those of [`ElasticBuilder::build`] and [`ElasticContact::solve`]; [`StatesError::Shrinks`] if the pressure falls
+    /// Those of [`ElasticBuilder::build`] and [`ElasticContact::solve`]; [`Error::Shrinks`] if the pressure falls
     /// somewhere while the load grows; if the accuracy is outside \[1e-8, 0.1\], or the reach is not finite and
     /// positive.
     pub fn run(self, to: Reach) -> Result<Arc<ElasticStates>> {
@@ -208,8 +209,7 @@ impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> SweepSolver<'_, P> {
         let mut largest = 0.0_f64;
         for &load in loads {
             if load.tilt() != self.asked.tilt {
-                let swept = Load::Force { normal: 0.0, tilt: self.asked.tilt }.to_string();
-                return Err(StatesError::OtherTilt { swept, given: load.to_string() }.into());
+                return Err(other_tilt(self.asked.tilt, load));
             }
             largest = largest.max(state_under(&mut self.elastic, load)?.state.level);
         }
@@ -254,7 +254,7 @@ impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> SweepSolver<'_, P> {
             }
             match self.halve(pair, &mut pairs, ends) {
                 Ok(next) => ends |= next.is_break(),
-                Err(Error::States(StatesError::Shrinks { .. })) if top < last => self.first_level = top,
+                Err(Error::Shrinks { .. }) if top < last => self.first_level = top,
                 Err(error) => return Err(error),
             }
         }

@@ -3,7 +3,7 @@
 use crate::Grid;
 use crate::contact::Builder;
 use crate::elastic::{ElasticBuilder, ElasticContact};
-use crate::error::{Error, Result, StepError};
+use crate::error::{Error, Refusal, Result, StepError};
 use crate::extent::Extent;
 use crate::fields::Fields;
 use crate::load::Load;
@@ -135,7 +135,7 @@ impl Domain {
             };
             lengths = [0, 1].map(|axis| if is_found[axis] { lengths[axis] * factors[axis] } else { lengths[axis] });
         }
-        Err(Error::NoDomain { length: lengths[0].max(lengths[1]) })
+        Err(no_domain(lengths[0].max(lengths[1])))
     }
 }
 
@@ -202,7 +202,13 @@ fn first_length(scene: &StudyScene<'_>, sides: [Side; 2]) -> Result<(f64, Vec<Ve
             }
         }
     }
-    Err(failed.unwrap_or(Error::NoDomain { length: 1e9 }))
+    Err(failed.unwrap_or_else(|| no_domain(1e9)))
+}
+
+/// The error of a study of which no domain up to this length \[m\] holds the contact.
+pub(super) fn no_domain(length: f64) -> Error {
+    let what = format!("no domain was found that holds the contact (the last one tried was {length:.1e} m wide)");
+    Refusal::value("no_domain", what, ": check geometry and load").into()
 }
 
 /// The least rise of the surfaces from the middle to a quarter of the sides that are found.

@@ -2,8 +2,9 @@
 
 use std::ops::ControlFlow;
 
+use super::domain::no_domain;
 use crate::Grid;
-use crate::error::{AdhesionError, Error, Result, StepError, count_within};
+use crate::error::{Error, Result, StepError, count_within};
 use crate::observe::grid_convergence::{OfMesh, SINGULAR, SMOOTH};
 use crate::study::domain::Domain;
 use crate::study::level::{Level, Runs};
@@ -67,7 +68,7 @@ pub(super) fn run(study: Study<'_>, progress: &mut dyn FnMut(StudyProgress) -> C
         }
         domain = domain.grown();
     }
-    Err(Error::NoDomain { length: domain.grid(ACROSS)?.lengths()[0] })
+    Err(no_domain(domain.grid(ACROSS)?.lengths()[0]))
 }
 
 /// Meshes on a domain until what is asked is met, or the budget ends it; nothing where the contact reaches the edge
@@ -163,7 +164,7 @@ fn first_mesh(runs: &mut Runs<'_, '_>, mut domain: Domain, most_cells: usize) ->
                 domain = domain.grown();
             }
             // the first mesh that resolves the attraction
-            Err(Error::Adhesion(AdhesionError::ZoneNotResolved { .. })) => across *= RATIO,
+            Err(Error::ZoneNotResolved { .. }) => across *= RATIO,
             Err(error) => return Err(error),
             Ok(level) if level.domain.is_narrower(&domain, NARROWER) && tries < MOST_GROWN => domain = level.domain,
             Ok(level) => break level,

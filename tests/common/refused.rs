@@ -36,3 +36,9 @@ fn table(kind: ErrorKind, rows: &[(Option<Error>, &str)]) {
         assert!(is_named, "row {row}, {named}: {error}");
     }
 }
+
+/// An error of this code, whose message begins so.
+pub fn says(error: &Error, code: &str, beginning: &str) {
+    assert_eq!(error.code(), code, "{error}");
+    assert!(error.to_string().starts_with(beginning), "{beginning}: {error}");
+}

@@ -13,7 +13,6 @@ use std::time::Duration;
 
 use crate::common::runs::{scenes, wandering};
 use viscocontact::adhesion::ExponentialAttraction;
-use viscocontact::contact::CheckpointError;
 use viscocontact::prelude::*;
 use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
 
@@ -29,7 +28,7 @@ fn every_scene_continues_from_its_file_and_its_snapshot_bit_by_bit() {
             contact.save(&path).unwrap();
             contact.snapshot_into(&mut snapshot);
             let (mut resumed, mut clone) = (build(), contact.clone());
-            assert!(matches!(resumed.restore(&snapshot), Err(Error::OtherContact { .. })));
+            assert!(resumed.restore(&snapshot).is_err_and(|error| error.code() == "other_contact"));
             resumed.resume(&path).unwrap();
             assert_eq!((contact.time(), contact.load()), (resumed.time(), resumed.load()));
             assert_eq!(
@@ -54,11 +53,10 @@ fn every_scene_continues_from_its_file_and_its_snapshot_bit_by_bit() {
     }
 }
 
-fn refused(contact: &mut ViscoelasticContact, path: &Path) -> CheckpointError {
-    match contact.resume(path).unwrap_err() {
-        Error::Checkpoint { cause, .. } => cause,
-        other => panic!("unexpected {other}"),
-    }
+fn refused(contact: &mut ViscoelasticContact, path: &Path) -> Error {
+    let error = contact.resume(path).unwrap_err();
+    assert!(matches!(error, Error::Checkpoint { .. }), "{error}");
+    error
 }
 
 /// What a scene of another rule differs in.
@@ -71,9 +69,10 @@ fn other_scenes_are_refused_by_what_differs() {
     let mut contact = sphere_on(grid(), three_times(), Settings::default());
     wandering(&mut contact, 1);
     contact.save(&path).unwrap();
-    let what = |mut other: ViscoelasticContact| match refused(&mut other, &path) {
-        CheckpointError::OtherScene { what, .. } => what,
-        error => panic!("unexpected {error}"),
+    let what = |mut other: ViscoelasticContact| {
+        let error = refused(&mut other, &path);
+        assert_eq!(error.code(), "checkpoint_other_scene", "{error}");
+        error.name().unwrap().to_owned()
     };
     let settings = Settings::default();
     for (grid, settings, differs) in [
@@ -106,7 +105,7 @@ fn other_scenes_are_refused_by_what_differs() {
     ] {
         assert_eq!(what(builder.build().unwrap()), differs);
     }
-    assert_eq!((what(layer(1.0e-3)), what(warming(20.0))), ("kernel", "temperature"));
+    assert_eq!([what(layer(1.0e-3)), what(warming(20.0))], ["kernel", "temperature"]);
     let own = |scale: f64| {
         let kernel = InfluenceKernel::from_spectrum(&grid(), move |_, _| scale).unwrap();
         builder_on(grid(), three_times()).kernel(kernel).build().unwrap()

@@ -210,7 +210,7 @@ fn checkpoints(t: &mut Table) {
 fn loads_and_texts(t: &mut Table) {
     const FORCE: WantedColumn = WantedColumn { name: "force", words: &["force"], others: &[], quantity: Read::FORCE, by_unit: false };
     let text = |text: &str| TextTable::read(text.as_bytes(), TextFormat::default()).unwrap();
-    let rows = |of: TextTable| of.rows(&[of.find(&FORCE).unwrap().unwrap()]).map_err(Error::from);
+    let rows = |of: TextTable| of.rows(&[of.find(&FORCE).unwrap().unwrap()]);
     t.row(rows(text("time [s],force [N]\n0,1\n1,2\n2,3,4\n")), File, "line 4: 3 columns separated by commas, but 2 are needed…");
     t.row(rows(text("time [s],force [N]\n0,1\n1,2\n2,high\n")), File, "line 4, column 2: \"high\" is not a number; leave the line out…");
     let both = text("force [N],force [mN]\n0,1\n1,2\n");

@@ -2,7 +2,7 @@
 
 use viscocontact::input::{Quantity, TextTable, WantedColumn};
 use viscocontact::rheology::{Experiment, Measurements, Units};
-use viscocontact::{Error, TextError, TextFormat};
+use viscocontact::{Result, TextFormat};
 
 const HERTZ: f64 = std::f64::consts::TAU;
 
@@ -215,11 +215,11 @@ const REFUSED: [(Quantity, &[&str]); 6] = [
 ];
 
 /// The size of the unit of a heading.
-fn unit(heading: &str, quantity: Quantity) -> Result<f64, Error> {
+fn unit(heading: &str, quantity: Quantity) -> Result<f64> {
     let wanted = WantedColumn { name: "column", words: &[], others: &[], quantity, by_unit: true };
     let table = TextTable::read(format!("{heading}\tother\n1\t2\n3\t4\n5\t6\n").as_bytes(), TextFormat::default())?;
     let found = table.find(&wanted)?.ok_or_else(|| table.missing(&wanted, ""))?;
-    Ok(found.unit()?)
+    found.unit()
 }
 
 #[test]
@@ -235,10 +235,7 @@ fn a_unit_is_the_whole_of_its_text() {
     for (quantity, headings) in REFUSED {
         for heading in headings {
             let error = unit(heading, quantity).expect_err(heading);
-            assert!(
-                matches!(error, Error::Text(TextError::Unit { .. } | TextError::Heading { .. })),
-                "{heading}: {error}"
-            );
+            assert!(["text_unit", "text_heading"].contains(&error.code()), "{heading}: {error}");
             refused += 1;
         }
     }

@@ -6,7 +6,6 @@ use std::sync::{Arc, Mutex};
 
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use viscocontact::load::LoadError;
 use viscocontact::prelude::*;
 
 const UNTIL: f64 = 2.0;
@@ -115,13 +114,13 @@ proptest! {
         let named = WRONG.iter().find(|wrong| format!("{:?}", wrong.0) == format!("{:?}", history.wrong)).unwrap().1;
         match error {
             None => prop_assert!(wrong.is_empty(), "looked at {wrong:?}"),
-            Some(Error::Load(LoadError::OutOfRange { time, field, .. })) => {
+            Some(Error::LoadOutOfRange { time, field, .. }) => {
                 prop_assert_eq!(field, named);
                 prop_assert_eq!(&wrong, &[time], "the first is the last that is looked at");
                 prop_assert_eq!(asked.last().unwrap().0, time);
                 // the next call returns the same error, and the contact stays
                 let again = run.next_step();
-                prop_assert!(matches!(again, Err(Error::Load(LoadError::OutOfRange { .. }))), "{again:?}");
+                prop_assert!(matches!(again, Err(Error::LoadOutOfRange { .. })), "{again:?}");
                 prop_assert!(seen(run.contact()) == before, "the contact changed");
             }
             Some(other) => prop_assert!(false, "{other}"),
@@ -142,9 +141,7 @@ fn no_step_skips_an_invalid_interval() {
             Err(error) => break error,
         }
     };
-    let Error::Load(LoadError::OutOfRange { time, field: "normal force", value, .. }) = error else {
-        panic!("{error}")
-    };
+    let Error::LoadOutOfRange { time, field: "normal force", value, .. } = error else { panic!("{error}") };
     assert!((0.9..1.1).contains(&time) && value.is_nan());
     assert!(error.to_string().contains(&format!("normal force = NaN at t = {time}")), "{error}");
 }
@@ -159,7 +156,7 @@ fn nan_is_named_or_returned_elsewhere() {
         Ok(ViscoelasticContact::builder(grid).geometry(&sphere).material(body.clone()).settings(settings))
     };
     let study = Study::new(scene, &nan, UNTIL).accuracy(Accuracy::COARSE).run();
-    assert!(matches!(study, Err(Error::Load(LoadError::OutOfRange { field: "normal force", .. }))));
+    assert!(matches!(study, Err(Error::LoadOutOfRange { field: "normal force", .. })));
     let broken = viscocontact::load::laws::all(&nan, &[0.0, 2.0]).unwrap_err();
     assert_eq!((broken.law, broken.quantity), ("every load is one that a step accepts", "normal force"));
 

@@ -4,8 +4,7 @@ use std::sync::Arc;
 
 use super::{convolve, noise};
 use crate::common::builder_of;
-use crate::common::refused::{field, refused};
-use viscocontact::KernelError;
+use crate::common::refused::{field, refused, says};
 use viscocontact::prelude::*;
 
 #[test]
@@ -73,17 +72,11 @@ fn influences_that_no_body_has_are_refused() {
         (wave(|q1, _| 7.0 - q1), "wave", [2, 0]),
         (wave(|_, _| 1e101), "wave", [0, 0]),
     ] {
-        assert!(
-            matches!(error, Error::Kernel(KernelError::InvalidInfluence { of, at, .. }) if of == what && at == cell),
-            "{error}"
-        );
+        says(&error, "kernel_invalid_influence", &format!("the influence {what} {cell:?} is "));
     }
     // the neighbours sink in more than the loaded cell
     let unstable = coefficient(&|i, j| if (i, j) == (0, 0) { 1.0 } else { 2.0 / (1 + i * i + j * j) as f64 });
-    assert!(
-        matches!(unstable, Error::Kernel(KernelError::NotPositiveDefinite { minimum, .. }) if minimum < -0.1),
-        "{unstable}"
-    );
+    assert!(unstable.code() == "kernel_not_positive_definite" && unstable.value().unwrap() < -0.1, "{unstable}");
     // positive though its embedding in a period is not: the half-space, which many a grid has
     assert!(InfluenceKernel::from_coefficients(&grid, |i, j| 1.0 / (1.0 + (i * i + j * j) as f64)).is_ok());
 }
@@ -108,7 +101,7 @@ fn contacts_refuse_materials_that_are_not_the_layers() {
         (right().against(steel), None, "counter body"),
     ] {
         let error = build(material, counter).unwrap_err();
-        assert!(matches!(error, Error::Kernel(KernelError::LayerMaterial { layer: 0.3, .. })), "{error}");
+        says(&error, "kernel_layer_material", "the layer was made for a Poisson's ratio of 0.3 at all times, and ");
         refused([(Some(error), word)]);
     }
 }

@@ -1,7 +1,7 @@
 //! Every law of attraction, and wrong ones, against the laws of the trait.
 
 use viscocontact::adhesion::{
-    AdhesionError, Attraction, Dugdale, ExponentialAttraction, LinearSoftening, VanDerWaals, laws, tabor_number,
+    Attraction, Dugdale, ExponentialAttraction, LinearSoftening, VanDerWaals, laws, tabor_number,
 };
 use viscocontact::prelude::*;
 
@@ -99,7 +99,7 @@ fn a_contact_takes_attractions_only() {
     ];
     for (traction, energy, what) in wrong {
         let refused = built(traction, energy).unwrap_err();
-        assert!(matches!(refused, Error::Adhesion(AdhesionError::Law(_))), "{refused}");
+        assert!(refused.code() == "adhesion_law", "{refused}");
         assert!(refused.to_string().contains(what), "{refused}");
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::common::refused::not_covered;
 use crate::common::sticky::{ball, elastic};
-use viscocontact::adhesion::{AdhesionError, ExponentialAttraction};
+use viscocontact::adhesion::ExponentialAttraction;
 use viscocontact::contact::Warnings;
 use viscocontact::prelude::*;
 
@@ -26,7 +26,7 @@ fn a_force_pulls_the_bodies_off() {
     let before = (pressed.time(), pressed.approach(), pressed.pressure().to_vec());
     let refused = pressed.step(1.0, Load::force(-5.35)).unwrap_err();
     assert!(
-        matches!(refused, Error::Adhesion(AdhesionError::PulledOff { time, force }) if time == 3.0 && (force + 5.35).abs() < 1e-12),
+        matches!(refused, Error::PulledOff { time, force } if time == 3.0 && (force + 5.35).abs() < 1e-12),
         "{refused}"
     );
     assert_eq!(before, (pressed.time(), pressed.approach(), pressed.pressure().to_vec()));
@@ -48,10 +48,7 @@ fn what_is_not_covered_is_refused() {
         .map(|error| (error, "where surfaces attract each other")),
     );
     // cells of 1/4: the zone has 4 ρ² cells
-    let Err(Error::Adhesion(AdhesionError::ZoneNotResolved { cells, spacing, range, .. })) = builder(0.5).build()
-    else {
-        panic!()
-    };
+    let Err(Error::ZoneNotResolved { cells, spacing, range, .. }) = builder(0.5).build() else { panic!() };
     assert!((cells - 1.0).abs() < 1e-12 && (spacing - 0.125).abs() < 1e-12 && (range - 0.5f64.sqrt()).abs() < 1e-12);
     for (range, coarse) in [(0.8, true), (1.1, false)] {
         let report = builder(range).build().unwrap().step(1.0, Load::approach(0.2)).unwrap();

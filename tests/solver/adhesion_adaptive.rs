@@ -4,7 +4,6 @@
 use super::adhesion_population::{Drawn, SIDE, Scene};
 use crate::common::draws::Draws;
 use crate::common::environment::from_environment;
-use viscocontact::adhesion::AdhesionError;
 use viscocontact::contact::Warnings;
 use viscocontact::prelude::*;
 
@@ -215,7 +214,7 @@ fn the_moment_of_separation() {
         loop {
             match run.next_step() {
                 Ok(Some(_)) => {}
-                Err(Error::Adhesion(AdhesionError::PulledOff { time, .. })) => return time,
+                Err(Error::PulledOff { time, .. }) => return time,
                 other => panic!("{other:?}"),
             }
         }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::common::sticky::{ball, elastic};
-use viscocontact::adhesion::{AdhesionError, Attraction, ExponentialAttraction, VanDerWaals};
+use viscocontact::adhesion::{Attraction, ExponentialAttraction, VanDerWaals};
 use viscocontact::contact::Warnings;
 use viscocontact::prelude::*;
 
@@ -41,7 +41,7 @@ fn the_attraction_beyond_the_edge_is_measured() {
                 assert_eq!(report.warnings.contains(Warnings::BEYOND_EDGE), report.figures.beyond_edge.is_some());
                 report.figures.beyond_edge
             }
-            Err(Error::Adhesion(AdhesionError::BeyondEdge { share, .. })) => Some(share),
+            Err(error) if error.code() == "adhesion_beyond_edge" => error.value(),
             Err(error) => panic!("{law:?}, {side}: {error}"),
         });
         println!("{law:?}, side {side}: {beyond:.1e} beyond the edge, found {found:?}");

@@ -4,7 +4,6 @@
 use super::adhesion_population::{Drawn, SIDE, Scene, check};
 use crate::common::draws::Draws;
 use crate::common::environment::from_environment;
-use viscocontact::adhesion::AdhesionError;
 use viscocontact::contact::Warnings;
 use viscocontact::prelude::*;
 
@@ -51,9 +50,9 @@ fn every_step_beside_a_jump_ends() {
                 (steps, passes, most) = (steps + 1, passes + own.passes, most.max(own.passes));
                 let jumped = match result {
                     Ok(report) => report.warnings.contains(Warnings::JUMP),
-                    Err(Error::Adhesion(AdhesionError::PulledOff { .. })) if kind == 2 => true,
+                    Err(Error::PulledOff { .. }) if kind == 2 => true,
                     // waves that stick all over the grid
-                    Err(Error::Adhesion(AdhesionError::FillsGrid { .. })) => {
+                    Err(error) if error.code() == "adhesion_fills_grid" => {
                         full += 1;
                         break 'scene;
                     }

@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use crate::common::{Draws, builder_of, from_environment};
-use viscocontact::adhesion::{AdhesionError, Attraction, Dugdale, ExponentialAttraction, LinearSoftening, VanDerWaals};
+use viscocontact::adhesion::{Attraction, Dugdale, ExponentialAttraction, LinearSoftening, VanDerWaals};
 use viscocontact::contact::StepError;
 use viscocontact::geometry::Sum;
 use viscocontact::prelude::*;
@@ -181,7 +181,7 @@ fn random_scenes() {
                     full += usize::from(report.contact_cells == contact.grid().len());
                     assert!(own.rise < 1e-6, "{name}, step {k}: {own:?}");
                 }
-                Err(Error::Adhesion(AdhesionError::PulledOff { .. })) if kind == 2 && down < 0.0 => {
+                Err(Error::PulledOff { .. }) if kind == 2 && down < 0.0 => {
                     pulled += 1;
                     break;
                 }
@@ -257,7 +257,7 @@ fn bodies_that_tilt_freely_are_in_balance() {
                     turned += usize::from(report.tilt.iter().all(|tilt| tilt.abs() > 1e-4));
                     steps += 1;
                 }
-                Err(Error::Adhesion(AdhesionError::PulledOff { .. })) if kind == 2 && down < 0.0 => {
+                Err(Error::PulledOff { .. }) if kind == 2 && down < 0.0 => {
                     pulled += 1;
                     break;
                 }

@@ -3,7 +3,7 @@
 use super::adhesion_population::law;
 use crate::common::sticky::{ball, elastic};
 use crate::common::{Draws, from_environment};
-use viscocontact::adhesion::{AdhesionError, ExponentialAttraction};
+use viscocontact::adhesion::ExponentialAttraction;
 use viscocontact::prelude::*;
 
 /// Whether the bodies are apart, from the fields and the law.
@@ -61,7 +61,7 @@ fn an_eccentric_pull_peels_at_one_force() {
         let mut pull = |force: &mut f64, step: f64| loop {
             match contact.step(1.0, load(*force - step)) {
                 Ok(_) => *force -= step,
-                Err(Error::Adhesion(AdhesionError::PulledOff { .. })) => return,
+                Err(Error::PulledOff { .. }) => return,
                 Err(error) => panic!("by {step} from {force}: {error}"),
             }
         };

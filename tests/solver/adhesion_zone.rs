@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::common::sticky::{ball, elastic};
 use crate::common::{contact_of, figures};
 use viscocontact::Special;
-use viscocontact::adhesion::{AdhesionError, Attraction, Dugdale, ExponentialAttraction, LinearSoftening, VanDerWaals};
+use viscocontact::adhesion::{Attraction, Dugdale, ExponentialAttraction, LinearSoftening, VanDerWaals};
 use viscocontact::prelude::*;
 
 /// Greatest pull on the way back from `start` in steps of `by` that take a time of `by` over `speed`.
@@ -87,7 +87,7 @@ fn contact_ends_where_the_wall_presses() {
 #[test]
 fn the_steepest_slope_counts() {
     let zone = |law: Arc<dyn Attraction>| match ball(16, 16.0, elastic(), law).build() {
-        Err(Error::Adhesion(AdhesionError::ZoneNotResolved { cells, range, .. })) => (cells, range),
+        Err(Error::ZoneNotResolved { cells, range, .. }) => (cells, range),
         other => panic!("{other:?}"),
     };
     // cells of 1: the lengths of the zones of range 1

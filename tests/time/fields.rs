@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use viscocontact::contact::Edge;
 use viscocontact::geometry::Sum;
 use viscocontact::prelude::*;
-use viscocontact::states::{Reach, StatesError, Sweep};
+use viscocontact::states::{Reach, Sweep};
 
 use crate::common::random_histories::{Control, FromSmallLoad};
 use crate::common::{
@@ -455,7 +455,7 @@ fn fields_of_contacts_that_shrink_are_found_by_graded_steps() {
         let force = level / material.contact_compliance(until);
         let sweep = Sweep::new(grid.clone(), &ball).kernel(std::sync::Arc::clone(&kernel)).accuracy(1e-2);
         let sweep = sweep.run(Reach::Level(level));
-        assert!(matches!(sweep, Err(Error::States(StatesError::Shrinks { .. }))), "{sweep:?}");
+        assert!(matches!(sweep, Err(Error::Shrinks { .. })), "{sweep:?}");
         let contact = |tolerance: f64| {
             let builder = builder_of(&ball, grid.clone(), material.clone()).kernel(std::sync::Arc::clone(&kernel));
             builder.settings(Settings::default().with_edge(Edge::Allow).with_tolerance(tolerance)).build().unwrap()

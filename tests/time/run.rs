@@ -8,7 +8,6 @@ use std::time::Duration;
 
 use viscocontact::adhesion::{Attraction, ExponentialAttraction};
 use viscocontact::geometry::Sum;
-use viscocontact::load::LoadError;
 use viscocontact::motion::{FnPath, Path, Straight, Travel};
 use viscocontact::output::Format;
 use viscocontact::prelude::*;
@@ -115,7 +114,7 @@ behaviours! {
         let load = FnHistory::new(|t| Load::force(0.5 - t));
         let mut run = kind.run(load, Stepping::fixed(0.2), 1.0);
         let error = std::iter::from_fn(|| Some(run.next_step())).find_map(Result::err).unwrap();
-        assert!(matches!(error, Error::Load(LoadError::OutOfRange { .. })), "{error}");
+        assert!(matches!(error, Error::LoadOutOfRange { .. }), "{error}");
     }
 
     quantities_that_are_no_number_end_the_run: kind, C => {

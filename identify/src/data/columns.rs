@@ -1,7 +1,6 @@
 //! The columns of a recording in a file.
 
 use viscocontact::input::{Quantity, TakenColumn, TextTable, WantedColumn};
-use viscocontact::{Error as ContactError, TextError};
 
 use crate::data::Recording;
 use crate::error::{Error, Result};
@@ -27,8 +26,8 @@ impl Recording {
     /// # Errors
     /// As [`Recording::from_csv`].
     pub fn from_table(table: &TextTable) -> Result<Recording> {
-        let required = |column: &WantedColumn| ContactError::from(table.missing(column, ""));
-        let find = |column: &WantedColumn| table.find(column).map_err(ContactError::from);
+        let required = |column: &WantedColumn| table.missing(column, "");
+        let find = |column: &WantedColumn| table.find(column);
         let time = find(&TIME)?.ok_or_else(|| required(&TIME))?;
         let [force, deflection, drive, depth] = [find(&FORCE)?, find(&DEFLECTION)?, find(&DRIVE)?, find(&DEPTH)?];
         for (one, other, wanted) in [(&force, &deflection, &FORCE), (&drive, &depth, &DRIVE)] {
@@ -37,13 +36,10 @@ impl Recording {
             }
         }
         let columns: Vec<TakenColumn> = [Some(time), force, deflection, drive, depth].into_iter().flatten().collect();
-        let units = columns.iter().map(TakenColumn::unit).collect::<Result<Vec<_>, _>>().map_err(ContactError::from)?;
-        let rows = table.rows(&columns).map_err(ContactError::from)?;
+        let units = columns.iter().map(TakenColumn::unit).collect::<Result<Vec<_>, _>>()?;
+        let rows = table.rows(&columns)?;
         for row in &rows {
-            if let Some(place) = row.values.iter().position(|value| !value.is_finite()) {
-                let (column, text) = (columns[place].index() + 1, row.values[place].to_string());
-                return Err(ContactError::from(TextError::NotNumeric { line: row.line, column, text }).into());
-            }
+            row.check_finite(&columns)?;
         }
         for pair in rows.windows(2) {
             let [previous, value] = [&pair[0], &pair[1]].map(|row| units[0] * row.values[0]);

@@ -11,7 +11,7 @@ use crate::contact::{Builder, Computation, Frame, Memory, Scene, Settings, State
 use crate::equilibrium::ground::check_bodies;
 use crate::equilibrium::indenter::even_axes_of;
 use crate::equilibrium::{Ground, Indenter, Region};
-use crate::error::{Error, Result, Special, coverage};
+use crate::error::{Error, Result, Special, coverage, missing};
 use crate::geometry::{Gap, Missed};
 use crate::hereditary::History;
 use crate::parallel::{Ranks, Rows};
@@ -26,10 +26,9 @@ impl Builder {
     /// ([`InfluenceKernel::half_space`](crate::InfluenceKernel::half_space)).
     ///
     /// If the kernel belongs to a layer, and the material has another Poisson's ratio, or one that is not constant,
-    /// or a counter body deforms ([`KernelError::LayerMaterial`](crate::KernelError::LayerMaterial)).
+    /// or a counter body deforms.
     ///
-    /// If a rheology without an exact series is given no [`Builder::times`]
-    /// ([`MaterialError::NoExponentialSeries`](crate::rheology::MaterialError::NoExponentialSeries)), no series is
+    /// If a rheology without an exact series is given no [`Builder::times`], no series is
     /// within the tolerance, or the times span more than 50 decades.
     ///
     /// If there is not enough memory ([`Error::OutOfMemory`], before any is taken; systems that overcommit memory, as
@@ -161,7 +160,7 @@ impl Builder {
 
     /// The scene with so many rigid bodies, and the history, on no cells yet.
     pub(crate) fn scene(&self, bodies: usize) -> Result<(Scene, History)> {
-        let mut material = self.material.clone().ok_or(Error::Missing { part: "material" })?;
+        let mut material = self.material.clone().ok_or_else(|| missing("material"))?;
         if let Some(other) = self.counter_body.clone() {
             material = material.against(other);
         }
@@ -189,7 +188,7 @@ impl Builder {
 
 /// The gap on the local rows of the whole grid.
 fn local_gap<'a>(gaps: &'a [LocalGap], rows: &Rows) -> Result<&'a [f64]> {
-    let Some((has, gap)) = gaps.first() else { return Err(Error::Missing { part: "geometry" }) };
+    let Some((has, gap)) = gaps.first() else { return Err(missing("geometry")) };
     let (gap, own, [n1, n2]) = (gap.as_ref().map_err(Error::clone)?, rows.own(), rows.cells());
     let is_of_all = *has == (0..n1);
     coverage::OTHER_ROWS.refuse_if(|_| !is_of_all && *has != own)?;

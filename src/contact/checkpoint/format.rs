@@ -9,8 +9,9 @@ use crc32fast::Hasher;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
+use super::check::malformed;
 use super::scene::{Parts, require};
-use crate::error::CheckpointError;
+use crate::error::Refusal;
 use crate::file::write_numbers;
 use crate::parallel::Rows;
 
@@ -75,25 +76,29 @@ pub(crate) struct Input<R> {
 
 impl Input<BufReader<File>> {
     /// Opens a file of this format.
-    pub(crate) fn open(path: &Path) -> Result<Self, CheckpointError> {
+    pub(crate) fn open(path: &Path) -> Result<Self, Refusal> {
         Input::begin(BufReader::with_capacity(PIECE, File::open(path).map_err(unreadable)?))
     }
 }
 
 impl<R: Read + Seek> Input<R> {
     /// Reads what begins a file of this format.
-    pub(crate) fn begin(mut file: R) -> Result<Input<R>, CheckpointError> {
+    pub(crate) fn begin(mut file: R) -> Result<Input<R>, Refusal> {
         let mut header = Vec::new();
         (&mut file).take(CONTENTS).read_to_end(&mut header).map_err(unreadable)?;
         if !header.starts_with(MAGIC) {
-            return Err(CheckpointError::Foreign);
+            let what = "not a checkpoint: the magic number is missing";
+            return Err(Refusal::file("checkpoint_foreign", what, ""));
         }
         let mut numbers = header[MAGIC.len()..].as_chunks().0.iter().copied().map(u32::from_le_bytes);
         let (Some(found), Some(stated_checksum)) = (numbers.next(), numbers.next()) else {
-            return Err(CheckpointError::Damaged);
+            return Err(damaged());
         };
         if found != VERSION {
-            return Err(CheckpointError::Format { found, known: VERSION });
+            let what = format!("the checkpoint is of format {found}, this version reads format {VERSION}");
+            let is_newer = found > VERSION;
+            let remedy = if is_newer { ": update viscocontact" } else { ": resume it with the version that wrote it" };
+            return Err(Refusal::file("checkpoint_format", what, remedy));
         }
         Ok(Input { file, stated_checksum, field: 0 })
     }
@@ -106,7 +111,7 @@ impl<R: Read + Seek> Input<R> {
     }
 
     /// Reads the contents, unless they are of another scene.
-    pub(crate) fn contents<T: DeserializeOwned>(&mut self, scene: &Parts) -> Result<T, CheckpointError> {
+    pub(crate) fn contents<T: DeserializeOwned>(&mut self, scene: &Parts) -> Result<T, Refusal> {
         self.file.seek(SeekFrom::Start(CONTENTS)).map_err(unreadable)?;
         require(&self.read::<Vec<Vec<f64>>>()?, scene)?;
         let contents = self.read()?;
@@ -114,15 +119,15 @@ impl<R: Read + Seek> Input<R> {
         Ok(contents)
     }
 
-    fn read<T: DeserializeOwned>(&mut self) -> Result<T, CheckpointError> {
+    fn read<T: DeserializeOwned>(&mut self) -> Result<T, Refusal> {
         // for one number at a time: nothing in a file is a text, which would need more room
         let mut room = [0; size_of::<f64>()];
         let read = postcard::from_io((&mut self.file, &mut room));
-        read.map(|(own, _)| own).map_err(|error| CheckpointError::Malformed { what: error.to_string() })
+        read.map(|(own, _)| own).map_err(|error| malformed(&error.to_string()))
     }
 
     /// Reads the local rows of the next field.
-    pub(super) fn field(&mut self, rows: &Rows) -> Result<Vec<f64>, CheckpointError> {
+    pub(super) fn field(&mut self, rows: &Rows) -> Result<Vec<f64>, Refusal> {
         let (own, columns) = (rows.own(), rows.cells()[1]);
         self.file.seek(SeekFrom::Start(self.field + 8 * (own.start * columns) as u64)).map_err(unreadable)?;
         self.field += 8 * rows.len() as u64;
@@ -135,9 +140,15 @@ impl<R: Read + Seek> Input<R> {
     }
 }
 
-fn unreadable(error: io::Error) -> CheckpointError {
+fn unreadable(error: io::Error) -> Refusal {
     match error.kind() {
-        ErrorKind::UnexpectedEof => CheckpointError::Malformed { what: "fields that do not fit its region".into() },
-        kind => CheckpointError::Unreadable { what: error.to_string(), kind },
+        ErrorKind::UnexpectedEof => malformed("fields that do not fit its region"),
+        kind => Refusal::file("checkpoint_unreadable", format!("it cannot be read: {error}"), "").of_system(kind),
     }
+}
+
+/// The error of a file that does not hold what was written.
+pub(crate) fn damaged() -> Refusal {
+    let what = "the checkpoint is damaged or truncated: its checksum is not that of its contents";
+    Refusal::file("checkpoint_damaged", what, "")
 }

@@ -15,14 +15,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::contact::{Computation, State, ViscoelasticContact};
 use crate::equilibrium::{Held, Indenter, Region};
-use crate::error::{CheckpointError, Error, Result};
+use crate::error::{Error, Refusal, Result};
 use crate::file::in_memory;
 use crate::geometry::Gap;
 use crate::hereditary::{Role, interleaved, runs};
 use crate::parallel::Rows;
 use check::check_fields;
 pub(crate) use check::{check_clocks, malformed};
-use format::{Input, Output, PIECE};
+use format::{Input, Output, PIECE, damaged};
 use scene::Parts;
 
 /// Why a run in a file is rejected.
@@ -36,7 +36,7 @@ pub(crate) trait Besides: Clone + Serialize + DeserializeOwned {
 }
 
 /// Rejects what no contact can continue from: a damaged file may hold anything.
-pub(crate) type Check<'a, P> = &'a dyn Fn(Option<&P>) -> Result<(), CheckpointError>;
+pub(crate) type Check<'a, P> = &'a dyn Fn(Option<&P>) -> Result<(), Refusal>;
 
 /// What the fields of a file follow.
 #[derive(Serialize, Deserialize)]
@@ -106,7 +106,7 @@ impl ViscoelasticContact {
     fn resume_from<P: Besides, R: Read + Seek>(
         &mut self,
         path: &Path,
-        open: impl FnOnce() -> Result<Input<R>, CheckpointError>,
+        open: impl FnOnce() -> Result<Input<R>, Refusal>,
         check: Check<'_, P>,
     ) -> Result<Option<P>> {
         let rows = self.computation.state.held.region.rows();
@@ -117,7 +117,7 @@ impl ViscoelasticContact {
             // not one save on one rank and the next on another
             rows.same([f64::from(file.stated_checksum)])?;
             let is_damaged = rows.any(rows.rank() == 0 && !file.is_intact());
-            let read = if is_damaged { Err(CheckpointError::Damaged) } else { self.read(&mut file, &scene, check) };
+            let read = if is_damaged { Err(damaged()) } else { self.read(&mut file, &scene, check) };
             let (mut state, besides) = rows.agree(read.map_err(failed))?;
             state.sum_up();
             if state.indenter_is_new {
@@ -138,7 +138,7 @@ impl ViscoelasticContact {
         file: &mut Input<impl Read + Seek>,
         scene: &Parts,
         check: Check<'_, P>,
-    ) -> Result<(State, Option<P>), CheckpointError> {
+    ) -> Result<(State, Option<P>), Refusal> {
         let Saved { mut state, gap, besides }: Saved<'_, P> = file.contents(scene)?;
         self.check(&state, gap.as_deref())?;
         check(besides.as_deref())?;

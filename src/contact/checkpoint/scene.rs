@@ -6,7 +6,7 @@ use std::fmt::Debug;
 use crate::attraction::Attraction;
 use crate::contact::{Scene, Settings, ViscoelasticContact};
 use crate::equilibrium::{Ground, Indenter, Region};
-use crate::error::CheckpointError;
+use crate::error::Refusal;
 use crate::hereditary::ExponentialRule;
 use crate::sum::scattered;
 
@@ -18,14 +18,20 @@ pub(crate) type Parts = [(&'static str, Vec<f64>)];
 const ROUNDING: f64 = 1e-9;
 
 /// Rejects the saved parts of another scene, and names the first that differs.
-pub(crate) fn require(saved: &[Vec<f64>], scene: &Parts) -> Result<(), CheckpointError> {
+pub(crate) fn require(saved: &[Vec<f64>], scene: &Parts) -> Result<(), Refusal> {
     let is_same = |(a, b): (&f64, &f64)| a == b || (a - b).abs() <= ROUNDING * a.abs().max(b.abs());
     let are_same = |a: &Vec<f64>, b: &Vec<f64>| a.len() == b.len() && a.iter().zip(b).all(is_same);
     let mut parts = scene.iter().enumerate();
     match parts.find(|(k, (_, own))| !saved.get(*k).is_some_and(|saved| are_same(saved, own))) {
-        Some((_, &(what, _))) => Err(CheckpointError::OtherScene { what }),
+        Some((_, &(what, _))) => Err(other_scene(what)),
         None => Ok(()),
     }
+}
+
+/// The error of a checkpoint of another scene, by what differs first.
+pub(super) fn other_scene(what: &'static str) -> Refusal {
+    let message = format!("the checkpoint is of another scene: its {what} differs from that of the contact");
+    Refusal::file("checkpoint_other_scene", message, ": build the contact as it was saved").naming(what)
 }
 
 /// What is the same to the last character, or another.

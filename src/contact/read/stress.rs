@@ -1,6 +1,6 @@
 //! The stress in bodies whose Poisson's ratio changes as they creep.
 
-use crate::error::{Error, Result, coverage, within};
+use crate::error::{Result, coverage, missing, other_contact, within};
 use crate::fields::Fields;
 use crate::observe::SubsurfaceStress;
 use crate::rheology::Compressibility;
@@ -57,7 +57,7 @@ impl StressHistory {
     /// # Errors
     /// If the bodies are pressed already, the grid follows the indenter
     /// ([`Frame::Indenter`](crate::contact::Frame::Indenter)), so that the bodies move under it, the stress in the
-    /// body is not known ([`KernelError::NoStress`](crate::KernelError::NoStress)), or there is not enough memory.
+    /// body is not known, or there is not enough memory.
     pub fn new<'a>(contact: impl Into<Fields<'a>>) -> Result<StressHistory> {
         StressHistory::of_body(contact.into(), 0)
     }
@@ -72,8 +72,8 @@ impl StressHistory {
 
     fn of_body(contact: Fields<'_>, body: usize) -> Result<StressHistory> {
         contact.covers(coverage::STRESS_HISTORY)?;
-        let material = contact.about.material.ok_or(Error::Missing { part: "material" })?;
-        let law = material.compressibility(body).ok_or(Error::Missing { part: "counter_body" })?;
+        let material = contact.about.material.ok_or_else(|| missing("material"))?;
+        let law = material.compressibility(body).ok_or_else(|| missing("counter_body"))?;
         SubsurfaceStress::body_of(contact.kernel(), !law.terms.is_empty())?;
         let peak = contact.max_pressure();
         within("pressure where the history of the stress begins", peak, peak == 0.0, "0: begin before the first load")?;
@@ -138,8 +138,8 @@ impl StressHistory {
 
     fn check_grid(&self, contact: Fields<'_>) -> Result<()> {
         contact.covers(coverage::STRESS)?;
-        let remedy = "it follows contacts on the grid that it was made for: make one of this contact";
-        let other = Error::OtherContact { what: "the history of the stress", remedy };
-        if *contact.grid() == self.grid { Ok(()) } else { Err(other) }
+        let remedy = ": it follows contacts on the grid that it was made for: make one of this contact";
+        let other = || other_contact("the history of the stress", remedy);
+        if *contact.grid() == self.grid { Ok(()) } else { Err(other()) }
     }
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::contact::{Scene, State, ViscoelasticContact};
 use crate::equilibrium::pressed::Pressed;
-use crate::error::{Error, Result, within};
+use crate::error::{Result, of_other_contact, within};
 use crate::load::{Load, Tilt, load_point};
 
 /// What is left of the last step where its start is lost.
@@ -75,7 +75,7 @@ impl ViscoelasticContact {
     /// If the snapshot was made of another contact; a contact and its clones may exchange theirs.
     pub fn restore(&mut self, snapshot: &Snapshot) -> Result<()> {
         if !Arc::ptr_eq(&snapshot.scene, &self.scene) {
-            return Err(Error::OF_OTHER_CONTACT);
+            return Err(of_other_contact());
         }
         self.go_to(&snapshot.state);
         self.saved_run = None;

@@ -6,7 +6,7 @@ use crate::contact::scene::Scene;
 use crate::contact::{State, Step, ViscoelasticContact};
 use crate::equilibrium::window::Window;
 use crate::equilibrium::{RigidBodies, Trial};
-use crate::error::{Error, Result};
+use crate::error::{Result, missing};
 use crate::rheology::Material;
 use crate::solver::{Freedom, Stop};
 
@@ -52,18 +52,15 @@ pub(super) struct AttractedStep<'a> {
     pub(super) wanted: Freedom,
 }
 
-/// The feature that steps of such surfaces need.
-const MISSING: Error = Error::Missing { part: "attraction" };
-
 impl AttractedStep<'_> {
     pub(super) fn solve(&self, _: &mut Window, _: &mut Trial, _: &mut Option<Box<Attracted>>) -> Result<()> {
-        Err(MISSING)
+        Err(missing("attraction"))
     }
 }
 
 impl ViscoelasticContact {
     pub(super) fn look_for_jump(&mut self, _: &Step<'_>) -> Result<()> {
-        Err(MISSING)
+        Err(missing("attraction"))
     }
 }
 
@@ -72,5 +69,5 @@ pub(super) fn coarse_zone(_: &Scene, _: impl FnOnce() -> f64) -> Option<f64> {
 }
 
 pub(in crate::contact) fn resolved_softening(_: &dyn Attraction, _: &Material, _: &Grid) -> Result<f64> {
-    Err(MISSING)
+    Err(missing("attraction"))
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use crate::error::{Error, MapError, Result, count_within, finite, positive};
+use crate::error::{Refusal, Result, count_within, finite, positive};
 use crate::geometry::HeightMap;
 use crate::geometry::surfaces::height_spectrum::{HeightSpectrum, wave_numbers};
 use crate::memory;
@@ -163,7 +163,9 @@ impl HeightMap {
     /// If heights are missing: fill them or crop the map.
     pub fn power_spectrum(&self) -> Result<Vec<(f64, f64)>> {
         if self.missing() > 0 {
-            return Err(Error::Map(MapError::Incomplete { missing: self.missing() }));
+            let what = format!("{} heights of the map are missing", self.missing());
+            let remedy = ": fill them with HeightMap::filled, or crop the map";
+            return Err(Refusal::value("map_incomplete", what, remedy).into());
         }
         let (cells, lengths) = (self.cells(), self.lengths());
         let count = self.heights().len() as f64;
@@ -213,6 +215,7 @@ mod tests {
 
     use super::*;
     use crate::Grid;
+    use crate::error::Error;
     use crate::geometry::{Anisotropy, Rough, RoughSpec, Roughness};
 
     fn rough(n: usize, hurst: f64, seed: u64) -> HeightMap {
@@ -339,6 +342,6 @@ mod tests {
         let distribution = step.height_distribution(usize::MAX);
         assert!(matches!(distribution, Err(Error::OutOfMemory { .. })), "{distribution:?}");
         let empty = HeightMap::new([2, 1], [1.0, 1.0], vec![f64::NAN, 1.0]).unwrap();
-        assert_eq!(empty.power_spectrum(), Err(Error::Map(MapError::Incomplete { missing: 1 })));
+        assert!(empty.power_spectrum().is_err_and(|error| error.code() == "map_incomplete"));
     }
 }

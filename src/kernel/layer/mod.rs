@@ -49,8 +49,7 @@ const SQUEEZED: f64 = 0.02;
 /// Layer and base creep by one function C(t): the base is rigid, or creeps as the layer does. A base that creeps
 /// otherwise, or not, is modelled in steady motions
 /// ([`Builder::build_sliding_on`](crate::contact::Builder::build_sliding_on)), not in time. The layer's ν must equal
-/// the material's, and constant: the contact is refused
-/// ([`KernelError::LayerMaterial`](crate::KernelError::LayerMaterial)) with another one, with
+/// the material's, and constant: the contact is refused with another one, with
 /// [`Material::elastic_bulk`](crate::rheology::Material::elastic_bulk), and with a counter body that deforms.
 ///
 /// A layer must be modelled where the contact radius is more than a tenth of its thickness: at a/h = 0.1 a bonded

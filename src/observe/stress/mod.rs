@@ -16,7 +16,7 @@ use crate::values::Counted;
 use num_complex::Complex64;
 
 use crate::axis::Axis;
-use crate::error::{KernelError, Result, exact_length, in_order, least_length, within};
+use crate::error::{Refusal, Result, exact_length, in_order, least_length, within};
 use crate::fft::Plane;
 use crate::kernel::{HalfSpace, fast_length};
 use crate::observe::profile::line_through;
@@ -106,7 +106,7 @@ impl SubsurfaceStress {
     /// one value per cell of the kernel's grid; negative values pull.
     ///
     /// # Errors
-    /// If the stress in the body is not known ([`KernelError::NoStress`]), there is not one pressure per cell, one is
+    /// If the stress in the body is not known, there is not one pressure per cell, one is
     /// not finite or beyond ±1e150 Pa, `poisson_ratio` is outside (−1, ½], or there is not enough memory for the
     /// transforms.
     pub fn new(kernel: &InfluenceKernel, pressure: &[f64], poisson_ratio: f64) -> Result<SubsurfaceStress> {
@@ -132,7 +132,11 @@ impl SubsurfaceStress {
 
     /// The half-space whose stress is known, with a constant Poisson's ratio or one that `changes`.
     pub(crate) fn body_of(kernel: &InfluenceKernel, changes: bool) -> Result<HalfSpace> {
-        let refused = |allowed| KernelError::NoStress { body: kernel.to_string(), allowed }.into();
+        let refused = |allowed: &'static str| {
+            let what = format!("the stress below the surface is not known of this body ({kernel})");
+            let range = format!(": it must be {allowed}");
+            Refusal::unsupported("kernel_no_stress", what, &range).allowing(allowed).into()
+        };
         match kernel.half_space_below() {
             None => Err(refused("a half-space, one periodic along both axes, or a line contact of half-spaces")),
             Some(HalfSpace::Periodic) if changes => Err(refused("of a constant Poisson's ratio where it is periodic")),

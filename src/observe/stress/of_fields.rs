@@ -1,6 +1,6 @@
 //! The stress below the surface.
 
-use crate::error::{Error, MaterialError, Result, coverage};
+use crate::error::{Refusal, Result, coverage, missing};
 use crate::fields::Fields;
 use crate::observe::SubsurfaceStress;
 
@@ -12,8 +12,8 @@ impl Fields<'_> {
     /// kernel, its pressure and Poisson's ratio.
     ///
     /// # Errors
-    /// If the contact has no material ([`Error::Missing`]), or Poisson's ratio changes as the body creeps
-    /// ([`MaterialError::ChangingPoisson`]): follow the run with a [`StressHistory`](crate::contact::StressHistory).
+    /// If the contact has no material, or Poisson's ratio changes as the body creeps: follow the run with a
+    /// [`StressHistory`](crate::contact::StressHistory).
     /// As [`SubsurfaceStress::new`].
     pub fn stress(&self) -> Result<SubsurfaceStress> {
         self.stress_of(0)
@@ -30,10 +30,15 @@ impl Fields<'_> {
 
     fn stress_of(&self, body: usize) -> Result<SubsurfaceStress> {
         self.covers(coverage::STRESS)?;
-        let material = self.about.material.ok_or(Error::Missing { part: "material" })?;
-        let law = material.compressibility(body).ok_or(Error::Missing { part: "counter_body" })?;
+        let material = self.about.material.ok_or_else(|| missing("material"))?;
+        let law = material.compressibility(body).ok_or_else(|| missing("counter_body"))?;
         if !law.terms.is_empty() {
-            return Err(MaterialError::ChangingPoisson { body }.into());
+            let what = format!(
+                "Poisson's ratio of body {body} changes as it creeps (elastic bulk): the stress below its surface \
+                 depends on pressures of the past, which the contact does not keep"
+            );
+            let remedy = "; follow the run with contact::StressHistory";
+            return Err(Refusal::unsupported("material_changing_poisson", what, remedy).into());
         }
         SubsurfaceStress::new(self.kernel(), self.pressure(), 0.5 * (1.0 - law.last))
     }

@@ -189,9 +189,10 @@ fn wrong_arguments_are_refused_by_name() {
 #[test]
 fn bodies_without_a_closed_form_are_refused() {
     let grid = Grid::square(4, 1.0).unwrap();
-    let refused = |result: Result<SubsurfaceStress>| match result.unwrap_err() {
-        Error::Kernel(refused @ KernelError::NoStress { .. }) => refused.to_string(),
-        other => panic!("{other}"),
+    let refused = |result: Result<SubsurfaceStress>| {
+        let error = result.unwrap_err();
+        assert_eq!(error.code(), "kernel_no_stress", "{error}");
+        error.to_string()
     };
     let layer = InfluenceKernel::from_spectrum(&grid, |q1, q2| if q1 + q2 > 0.0 { 1.0 } else { 0.0 }).unwrap();
     assert!(refused(SubsurfaceStress::new(&layer, &[0.0; 16], 0.3)).contains("user-defined"));

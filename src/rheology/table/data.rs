@@ -1,7 +1,28 @@
 //! Checks of measured data before a fit.
 
-use crate::error::{Place, Result, TableError, least_length};
+use crate::rounded::rounded;
+use std::fmt;
+
+use crate::error::{Refusal, Result, least_length};
 use crate::rheology::fit::{FitWarning, MaterialFunction, Sample};
+
+/// A place in a table: the entry of a slice, or the line of a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Place {
+    /// Index into the slices given.
+    Entry(usize),
+    /// Line of the file, from 1.
+    Line(u64),
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Place::Entry(index) => write!(f, "entry {index}"),
+            Place::Line(line) => write!(f, "line {line}"),
+        }
+    }
+}
 
 /// One row of a table: its place, the abscissa, and one value for each column.
 #[derive(Debug, Clone, PartialEq)]
@@ -75,7 +96,13 @@ impl Deformation {
         if self == Deformation::Unnamed || self == wanted {
             return Ok(());
         }
-        Err(TableError::Deformation { in_tension: self == Deformation::Tension }.into())
+        let (modulus, remedy) = if self == Deformation::Tension {
+            ("tension", ": use Measurements::fit_tension and Material::from_tension")
+        } else {
+            ("shear", ": use Measurements::fit and a material made from shear")
+        };
+        let what = format!("the headings of the table name moduli in {modulus}");
+        Err(Refusal::value("table_deformation", what, remedy).into())
     }
 }
 
@@ -133,7 +160,10 @@ pub(crate) fn validated(layout: Layout, rows: &mut [TableRow]) -> Result<Vec<Sam
     let Layout { table, abscissa, columns, zero } = layout;
     for TableRow { place, x, values, .. } in &*rows {
         let check = |column, value, inside, allowed| {
-            if inside { Ok(()) } else { Err(TableError::OutOfRange { table, place: *place, column, value, allowed }) }
+            let what = || format!("{table}, {place}: {column} = {value:?} is not allowed: it must be {allowed}");
+            let refused =
+                || Refusal::value("table_out_of_range", what(), "; leave out rows without a value").naming(column);
+            if inside { Ok(()) } else { Err(refused().valued(value).allowing(allowed)) }
         };
         let allowed = if zero { "0, or in [1e-90, 1e90]" } else { "in [1e-90, 1e90]" };
         check(abscissa, *x, *x == 0.0 && zero || (1e-90..=1e90).contains(x), allowed)?;
@@ -144,7 +174,10 @@ pub(crate) fn validated(layout: Layout, rows: &mut [TableRow]) -> Result<Vec<Sam
     rows.sort_by(|a, b| a.x.total_cmp(&b.x));
     if let Some(pair) = rows.windows(2).find(|pair| pair[0].x == pair[1].x) {
         let (earlier, place, value) = (pair[0].place, pair[1].place, pair[0].x);
-        return Err(TableError::Duplicate { table, place, earlier, column: abscissa, value }.into());
+        let what = format!("{table}: {place} and {earlier} give two values for {abscissa} = {value}");
+        let remedy = ": give their mean, take one section of the file (TextTable::section), or read several \
+            temperatures as isotherms (Isotherm::from_csv_reader)";
+        return Err(Refusal::value("table_duplicate", what, remedy).naming(abscissa).valued(value).into());
     }
     least_length(table, rows.len(), LEAST_ROWS)?;
     let sample = |index: usize, function| {
@@ -181,7 +214,15 @@ pub(crate) fn wrong_way(layout: Layout, rows: &[TableRow], scatter: Option<f64>)
             let off = excesses.iter().filter(|excess| **excess > 1.0).count();
             let TableRow { place, ref values, .. } = rows[worst];
             if off * ROWS_PER_KNOCK > rows.len() || change > MOST_NOISE_OF_FEW {
-                return Err(TableError::WrongWay { table, place, column, value: values[index], change, noise }.into());
+                let (value, [off, noise]) = (values[index], [change, noise].map(|part| 100.0 * part));
+                let what = format!(
+                    "{table}, {place}: {column} = {} deviates by {off:.2} % from the nearest monotone curve, where \
+                     the scatter of the data explains {noise:.2} %",
+                    rounded(value, 5)
+                );
+                let remedy = ": compliances rise, moduli of relaxation fall (Experiment); Measurements::with_scatter \
+                    states more scatter";
+                return Err(Refusal::value("table_wrong_way", what, remedy).naming(column).valued(value).into());
             }
             // rows after a knock deviate, too
             let Some(most) = (0..rows.len()).max_by(|&a, &b| deviations[a].total_cmp(&deviations[b])) else { continue };

@@ -3,11 +3,13 @@
 use std::io::Read;
 use std::path::Path;
 
-use crate::error::{Error, Place, Result, TableError, TextError, positive};
+use super::data::Place;
+use crate::error::{Refusal, Result, positive};
 use crate::file::open;
 use crate::input::{Quantity, TakenColumn, TextFormat, TextTable, UnitOf, WantedColumn, name, same, symbol};
 use crate::rheology::table::data::{Deformation, TableRow};
 use crate::rheology::table::{Experiment, Measurements};
+use crate::rounded::rounded;
 
 /// The units of a file in SI, which its headings must agree with, or the units of its headings.
 ///
@@ -114,10 +116,9 @@ impl Measurements {
     ///
     /// # Errors
     /// As [`Measurements::creep`]; if the file cannot be read
-    /// ([`FileError::Unreadable`](crate::FileError::Unreadable)), or, each reported with its line
-    /// ([`TextError`](crate::TextError)): columns that no heading names, or several; a heading without a unit; too
-    /// few or too many columns; an entry that is not a number, or has the other decimal mark; a unit that differs
-    /// ([`TableError::Unit`]).
+    /// ([`Error::Unreadable`](crate::Error::Unreadable)), or, each reported with its line: columns that no heading
+    /// names, or several; a heading without a unit; too
+    /// few or too many columns; an entry that is not a number, or has the other decimal mark; a unit that differs.
     pub fn from_csv(
         experiment: Experiment,
         path: impl AsRef<Path>,
@@ -174,7 +175,7 @@ impl Columns {
     pub(super) fn of(experiment: Experiment, table: &TextTable, units: Units) -> Result<Columns> {
         match (Columns::named(experiment, table, units), table.without_comment()) {
             // a comment that is a remark names no columns
-            (Err(error @ Error::Text(TextError::Heading { .. })), Some(plain)) => {
+            (Err(error), Some(plain)) if error.code() == "text_heading" => {
                 Columns::named(experiment, &plain, units).or(Err(error))
             }
             (found, _) => found,
@@ -183,7 +184,7 @@ impl Columns {
 
     fn named(experiment: Experiment, table: &TextTable, units: Units) -> Result<Columns> {
         let find = |column: &WantedColumn| -> Result<TakenColumn> {
-            Ok(table.find(column)?.ok_or_else(|| table.missing(column, ""))?)
+            table.find(column)?.ok_or_else(|| table.missing(column, ""))
         };
         let abscissa = if experiment.layout().zero { &TIME } else { &FREQUENCY };
         let values: &[&WantedColumn] = match experiment {
@@ -209,7 +210,13 @@ impl Columns {
                     taken.extend(of_tan.or(of_phase));
                 }
                 (Experiment::Dynamic, None, ..) if table.find(&STORAGE)?.is_some() => {
-                    return Err(TableError::StorageOnly { line: taken[0].line() }.into());
+                    let what = format!(
+                        "line {}: the headings name a storage modulus, but no loss modulus, phase angle or loss \
+                         factor (tan)",
+                        taken[0].line()
+                    );
+                    let remedy = ": name it, or read the table as Experiment::Storage";
+                    return Err(Refusal::value("table_storage_only", what, remedy).into());
                 }
                 _ => {
                     for column in values {
@@ -279,9 +286,14 @@ fn sized(given: Option<(&'static str, Option<f64>)>, column: TakenColumn) -> Res
         return Ok(column);
     };
     let refused = |unit: &str, size: Option<f64>| {
-        let (line, heading, unit) = (column.line(), column.heading().to_owned(), unit.into());
-        let expected = name(column.quantity, given).into();
-        Err(TableError::Unit { line, column: column.index() + 1, heading, unit, size, field, given, expected }.into())
+        let (line, index, heading) = (column.line(), column.index() + 1, column.heading());
+        let expected = name(column.quantity, given);
+        let what = format!(
+            "line {line}, column {index}: the heading {heading:?} says {unit}, but Units::{field} = {given} means \
+             {expected}"
+        );
+        let size = size.map(|size| format!("; of {unit} it is {}", rounded(size, 5))).unwrap_or_default();
+        Err(Refusal::value("table_unit", what, &size).naming(field).valued(given).into())
     };
     match &column.unit_of {
         UnitOf::Sizes(unit, sizes) if !sizes.iter().any(|&size| same(size, given)) => {

@@ -1,4 +1,5 @@
-use crate::error::{Error, Place, Result, TableError, in_order, least_length, within};
+use super::data::Place;
+use crate::error::{Error, Refusal, Result, in_order, least_length, within};
 use crate::rheology::table::Measurements;
 use crate::rheology::table::data::{Deformation, TableRow};
 use crate::rheology::table::isotherm::Isotherm;
@@ -51,7 +52,7 @@ impl MasterCurve {
     ///
     /// # Errors
     /// If there is no isotherm, two have the same temperature, they measure different quantities, none is at the
-    /// reference temperature, or neighbours do not overlap in their values ([`TableError::NoOverlap`]).
+    /// reference temperature, or neighbours do not overlap in their values.
     pub fn new(reference: f64, isotherms: Vec<Isotherm>) -> Result<MasterCurve> {
         MasterCurve::shifted(reference, isotherms, false)
     }
@@ -308,7 +309,10 @@ fn sorted(mut isotherms: Vec<Isotherm>) -> Result<Vec<Isotherm>> {
     isotherms.sort_by(|a, b| a.temperature.total_cmp(&b.temperature));
     let first = isotherms[0].experiment;
     if let Some(other) = isotherms.iter().map(|isotherm| isotherm.experiment).find(|other| *other != first) {
-        return Err(TableError::MixedIsotherms { first: first.layout().table, second: other.layout().table }.into());
+        let [first, second] = [first, other].map(|experiment| experiment.layout().table);
+        let what = format!("a {first} and a {second} cannot be joined to one master curve");
+        let remedy = ": give isotherms of one experiment";
+        return Err(Refusal::value("table_mixed_isotherms", what, remedy).into());
     }
     let temperatures = isotherms.iter().map(|isotherm| isotherm.temperature);
     in_order("temperatures of the isotherms", temperatures, "differ", |colder, warmer| colder != warmer)?;

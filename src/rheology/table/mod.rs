@@ -13,10 +13,12 @@ pub use file::Units;
 pub use isotherm::Isotherm;
 pub use master_curve::MasterCurve;
 
-use crate::error::{Place, Result, TableError, positive};
+use self::data::Place;
+use crate::error::{Refusal, Result, positive};
 use crate::input::TakenColumn;
 use crate::rheology::fit::{FitReport, FitWarning, MOST_MISFIT, Sample, Search};
 use crate::rheology::{CreepSeries, Tension};
+use crate::rounded::rounded;
 use crate::values::Counted;
 pub use data::Experiment;
 use data::{Deformation, LEAST_ROWS, TableRow, averaged_repeats, validated, wrong_way};
@@ -203,10 +205,10 @@ impl Measurements {
     ///
     /// # Errors
     /// If a compliance decreases, a relaxation modulus increases, or a storage modulus decreases with the frequency,
-    /// by more than the scatter of the rows around explains ([`TableError::WrongWay`](crate::rheology::TableError)), in
+    /// by more than the scatter of the rows around explains, in
     /// more than one row of a hundred;
-    /// if no series fits the table ([`TableError::Inconsistent`](crate::rheology::TableError)); or if the headings of
-    /// its file name moduli in tension ([`TableError::Deformation`](crate::rheology::TableError)).
+    /// if no series fits the table; or if the headings of
+    /// its file name moduli in tension.
     pub fn fit(&self) -> Result<CreepSeries> {
         self.fitted(Deformation::Shear)
     }
@@ -267,7 +269,15 @@ impl Measurements {
         let rms = nearest.rms_misfit();
         if let Some(worst) = nearest.worst().filter(|_| rms > most) {
             let table = layout.table;
-            return Err(TableError::Inconsistent { table, rms, worst: worst.misfit().abs(), x: worst.x }.into());
+            let what = format!(
+                "the {table} is not that of a linear body: the best series deviates by {:.0} % in the root mean \
+                 square, and by {:.0} % at x = {}",
+                100.0 * rms,
+                100.0 * worst.misfit().abs(),
+                rounded(worst.x, 3)
+            );
+            let remedy = "; Measurements::with_scatter states more scatter";
+            return Err(Refusal::value("table_inconsistent", what, remedy).naming("misfit").valued(rms).into());
         }
         let spectrum = measured.series.creep(samples[0].function)?;
         Ok(CreepSeries { spectrum, report, known_until: last, measured: [known_from, last] })

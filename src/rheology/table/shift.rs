@@ -8,7 +8,7 @@
 
 use super::data::{TableRow, median_scatter};
 use super::isotherm::Isotherm;
-use crate::error::{Result, TableError};
+use crate::error::{Error, Refusal, Result};
 use crate::numeric;
 
 /// Shifts tried before the best is refined.
@@ -92,7 +92,7 @@ pub(super) fn shift_between(colder: &Isotherm, warmer: &Isotherm, is_vertical: b
         logs().fold(f64::NEG_INFINITY, f64::max) - logs().fold(f64::INFINITY, f64::min) < 1e-6
     };
     if is_constant(colder) || is_constant(warmer) {
-        return Err(TableError::NothingToShift { temperatures }.into());
+        return Err(nothing_to_shift(temperatures));
     }
     let ([c0, c1], [w0, w1]) = (colder.span(), warmer.span());
     let least = LEAST_OVERLAP * (c1 - c0).min(w1 - w0);
@@ -125,7 +125,7 @@ pub(super) fn shift_between(colder: &Isotherm, warmer: &Isotherm, is_vertical: b
         let overlap = (c1 - c0 + w1 - w0) / std::f64::consts::LN_10 - decades(widest);
         let of_column = |&column: &usize| pair.residual(widest, column, 0.0);
         let there = all.iter().map(of_column).fold(f64::INFINITY, f64::min);
-        return Err(TableError::NoOverlap { temperatures, apart, overlap, there }.into());
+        return Err(no_overlap(temperatures, overlap, apart, there));
     }
     let error = pair.error(shift, [low, high], &all, &residual);
     let mut disagreement: f64 = 0.0;
@@ -295,4 +295,27 @@ fn slopes(isotherm: &Isotherm, column: usize) -> Vec<[f64; 2]> {
         [slopes[slopes.len() / 2], 1.0 / squares]
     };
     (0..points.len()).map(around).collect()
+}
+
+/// The error of an isotherm that is constant in time.
+fn nothing_to_shift(temperatures: [f64; 2]) -> Error {
+    let [colder, warmer] = temperatures;
+    let what = format!(
+        "one of the isotherms at {colder} K and {warmer} K is constant in time: its shift cannot be determined"
+    );
+    Refusal::value("table_nothing_to_shift", what, "; use MasterCurve::with_law").into()
+}
+
+/// The error of isotherms whose values do not overlap: the decades of the widest overlap in which they are near each
+/// other, and how far they are apart at the best shift and there.
+fn no_overlap(temperatures: [f64; 2], overlap: f64, apart: f64, there: f64) -> Error {
+    let [colder, warmer] = temperatures;
+    let what = format!(
+        "the isotherms at {colder} K and {warmer} K do not overlap in their values: at the best shift they differ by \
+         {:.0} %, and where they overlap by {overlap:.1} decades by {:.0} %",
+        100.0 * apart,
+        100.0 * there
+    );
+    let remedy = "; measure at a temperature in between, or use MasterCurve::with_law";
+    Refusal::value("table_no_overlap", what, remedy).into()
 }

@@ -2,10 +2,11 @@ use std::fmt;
 use std::sync::{Arc, Mutex};
 
 use crate::ascending::{Ascending, TimeTable};
-use crate::error::{MaterialError, Result, finite, positive, within};
+use crate::error::{Error, Refusal, Result, finite, positive, within};
 use crate::numeric::root;
 use crate::quadrature::GaussLegendre;
 use crate::rheology::TimeTemperature;
+use crate::rounded::{TIME, rounded};
 
 /// Number of temperatures among which the slowest creep of a run is sought.
 const TEMPERATURES: i32 = 64;
@@ -99,11 +100,19 @@ const LONGEST_LOG: f64 = 700.0;
 /// Relative change of the temperature within the resolution of a time, beyond which it jumps.
 const CONTINUOUS: f64 = 1e-9;
 
+/// The error of moduli that change with temperature, which `what` does not cover.
+pub(crate) fn vertical_factors(what: &str) -> Error {
+    let what = format!("{what} does not cover moduli that change with temperature (vertical factors b_T)");
+    let remedy = ": move each material to one temperature by TimeTemperature::at, or leave the factors out with \
+        TimeTemperature::without_vertical_factors";
+    Refusal::unsupported("material_vertical_factors", what, remedy).into()
+}
+
 impl TemperatureHistory {
     /// A temperature \[K\] that never changes.
     ///
     /// # Errors
-    /// As [`TimeTemperature::shift_factor`]; if the law has vertical factors ([`MaterialError::VerticalFactors`]).
+    /// As [`TimeTemperature::shift_factor`]; if the law has vertical factors.
     pub fn constant(law: TimeTemperature, temperature: f64) -> Result<TemperatureHistory> {
         TemperatureHistory::table(law, &[(0.0, temperature)])
     }
@@ -113,7 +122,7 @@ impl TemperatureHistory {
     ///
     /// # Errors
     /// If there is no entry, a time is not finite or earlier than the one before, for a temperature as
-    /// [`TimeTemperature::shift_factor`], or if the law has vertical factors ([`MaterialError::VerticalFactors`]).
+    /// [`TimeTemperature::shift_factor`], or if the law has vertical factors.
     pub fn table(law: TimeTemperature, table: &[(f64, f64)]) -> Result<TemperatureHistory> {
         let checked = TimeTable::new(["temperature table", "temperature table times"], table, 1)?;
         table.iter().try_for_each(|&(_, temperature)| law.shift_factor(temperature).map(drop))?;
@@ -124,7 +133,7 @@ impl TemperatureHistory {
     /// steps end there. The returned temperatures are checked when they are used.
     ///
     /// # Errors
-    /// If a corner is not finite, or the law has vertical factors ([`MaterialError::VerticalFactors`]).
+    /// If a corner is not finite, or the law has vertical factors.
     pub fn function(
         law: TimeTemperature,
         temperature: impl Fn(f64) -> f64 + Send + Sync + 'static,
@@ -137,7 +146,7 @@ impl TemperatureHistory {
 
     fn new(law: TimeTemperature, course: Temperatures) -> Result<TemperatureHistory> {
         if law.has_vertical_factors() {
-            return Err(MaterialError::VerticalFactors { what: "a history of the temperature" }.into());
+            return Err(vertical_factors("a history of the temperature"));
         }
         let pieces = Arc::new(Mutex::new([(); 2].map(|()| Vec::with_capacity(ROOM))));
         Ok(TemperatureHistory { law, course, ageing: None, rule: GaussLegendre::new(POINTS), pieces })
@@ -200,8 +209,8 @@ impl TemperatureHistory {
     /// is smooth between its corners, and to five at least.
     ///
     /// # Errors
-    /// If a time is not finite, `to` is before `from`, the reduced time overflows, a closure is too rough
-    /// ([`MaterialError::RoughTemperature`](crate::rheology::MaterialError::RoughTemperature)), or for a temperature
+    /// If a time is not finite, `to` is before `from`, the reduced time overflows, a closure is too rough, or for a
+    /// temperature
     /// in between as [`TimeTemperature::shift_factor`].
     pub fn reduced_time(&self, from: f64, to: f64) -> Result<f64> {
         finite("start of the reduced time", from)?;
@@ -300,7 +309,17 @@ impl TemperatureHistory {
         }
         let sum = sum + pieces.iter().map(|(_, _, part)| part).sum::<f64>();
         if !pieces.is_empty() && apart > LEAST_AGREEMENT * sum {
-            return Err(MaterialError::RoughTemperature { from, to, accuracy: apart / sum }.into());
+            let what = format!(
+                "the temperature between {} s and {} s is too rough for its reduced time, which is known to {:.0e}",
+                rounded(from, TIME),
+                rounded(to, TIME),
+                apart / sum
+            );
+            let remedy = ": name its corners, or give it as a table (TemperatureHistory::table)";
+            return Err(Refusal::value("material_rough_temperature", what, remedy)
+                .naming("accuracy of the reduced time")
+                .valued(apart / sum)
+                .into());
         }
         Ok(sum)
     }

@@ -5,6 +5,7 @@ mod law;
 mod shifted;
 
 pub use history::TemperatureHistory;
+pub(crate) use history::vertical_factors;
 #[cfg(feature = "data")]
 pub(crate) use law::GAS_CONSTANT;
 pub use law::TimeTemperature;

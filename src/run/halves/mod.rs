@@ -10,7 +10,7 @@ mod search;
 use crate::contact::step::Attempt;
 use crate::contact::step::error_in_time::{error_in_time, least_sizes};
 use crate::contact::{Computation, State, Step, ViscoelasticContact};
-use crate::error::{AdhesionError, Error, Result};
+use crate::error::{Error, Result};
 use crate::hereditary::{Interval, StepContext, TimeError, WEIGHTS};
 use crate::load::LoadHistory;
 
@@ -110,7 +110,7 @@ impl Halves {
 
 /// Whether a step failed because its load pulls the bodies off.
 pub(super) fn is_pulled_off(error: &Error) -> bool {
-    matches!(error, Error::Adhesion(AdhesionError::PulledOff { .. }))
+    matches!(error, Error::PulledOff { .. })
 }
 
 /// The interval from now to `time` of a part of a step.

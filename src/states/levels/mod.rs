@@ -3,12 +3,14 @@
 mod distance;
 mod edge;
 mod merging;
+mod refusals;
 mod shear;
 
-use crate::error::{Error, Result, StatesError, StepError};
+use crate::error::{Error, Result, StepError};
 use crate::hereditary::{ExponentialRule, GroupHistory, Interpolant};
 use crate::states::curve::{ElasticStates, Motions};
 pub(super) use crate::states::levels::shear::Shear;
+use refusals::{below, beyond, beyond_friction, out_of_order};
 
 /// Rounding of a displacement between 0 and 1, and of levels that are one.
 const ROUNDING: f64 = 1e-9;
@@ -185,7 +187,7 @@ impl Levels {
             self.check_order(time)?;
         }
         let level = wanted.level;
-        self.sticks_to(level).map_err(|share| StatesError::BeyondFriction { time, share })?;
+        self.sticks_to(level).map_err(|share| beyond_friction(time, share))?;
         if level.is_nan() {
             return Err(Error::Step(StepError::Overflow { time, what: "the level" }));
         }
@@ -201,10 +203,10 @@ impl Levels {
                 Demand::Force(_) => (format!("the level {level:.3e} m²"), states.last_level()),
                 Demand::Depth { depth, .. } => (format!("the depth {depth:.3e} m"), states.last_depth()),
             };
-            return Err(StatesError::Beyond { time, needed, last }.into());
+            return Err(beyond(time, &needed, last));
         }
         if level > 0.0 && level < states.first_level() * (1.0 - ROUNDING) {
-            return Err(StatesError::Below { time, level, first: states.first_level() }.into());
+            return Err(below(time, level, states.first_level()));
         }
         Ok(wanted)
     }
@@ -228,7 +230,7 @@ impl Levels {
         match self.trial.iter().find(|w| !w.is_finite() || **w > 1.0 + ROUNDING) {
             None => Ok(()),
             Some(w) if !w.is_finite() => Err(Error::Step(StepError::Overflow { time, what: "the displacement" })),
-            Some(&displacement) => Err(StatesError::OutOfOrder { time, displacement }.into()),
+            Some(&share) => Err(out_of_order(time, share)),
         }
     }
 

@@ -1,8 +1,9 @@
 //! Tables from files: shapes that are read, and errors that name the line.
 
 use super::*;
+use crate::common::refused::says;
 use viscocontact::rheology::{CreepSeries, Experiment, Units};
-use viscocontact::{Error, FileError, TextError, TextFormat};
+use viscocontact::{Error, TextFormat};
 
 fn fitted(experiment: Experiment, bytes: &[u8], units: Units) -> Result<CreepSeries> {
     Measurements::from_csv_reader(experiment, bytes, units, TextFormat::default()).and_then(|table| table.fit())
@@ -22,34 +23,31 @@ fn rows_come_in_any_order() {
 /// Fields that are no numbers, and rows of another width, are named in `dialects`.
 #[test]
 fn errors_name_the_line() {
-    let error = |result: Result<CreepSeries>| match result.unwrap_err() {
-        Error::Table(error) => error,
-        other => panic!("{other}"),
+    let error = |result: Result<CreepSeries>| result.unwrap_err();
+    let heading = |text: &str, named: &str| {
+        let beginning = format!("line 1: not exactly one heading names the {named} (headings: ");
+        says(&read(text).unwrap_err(), "text_heading", &beginning);
     };
-    let heading = |text: &str| match read(text).unwrap_err() {
-        Error::Text(TextError::Heading { line: 1, column, several, .. }) => (column, several),
-        other => panic!("{other}"),
-    };
-    assert_eq!(heading("time,t,J\n1,1,1\n"), ("time", ": 1 \"time\", 2 \"t\"".into()));
+    heading("time,t,J\n1,1,1\n", "time: 1 \"time\", 2 \"t\"");
     let bad = error(read("time,J\n1,1e-9\n\n2,1.1e-9\n1,1.2e-9\n3,2e-9\n"));
-    let TableError::Duplicate { place: Place::Line(5), earlier: Place::Line(2), .. } = bad else { panic!("{bad}") };
+    says(&bad, "table_duplicate", "creep table: line 5 and line 2 give two values");
     for value in ["-1.1e-9", "NaN"] {
         let bad = error(read(&format!("time,J\n1,1e-9\n2,{value}\n3,1.2e-9\n")));
-        assert!(matches!(bad, TableError::OutOfRange { place: Place::Line(3), .. }), "{bad}");
+        says(&bad, "table_out_of_range", "creep table, line 3: ");
     }
     // columns that are something else, decimal commas, frequencies in Hz
-    assert_eq!(heading("time,creep strain [%]\n1,2\n"), ("creep compliance", String::new()));
+    heading("time,creep strain [%]\n1,2\n", "creep compliance");
     let bad = read("time,J\n1,5,1,1\n2,5,2,2\n").unwrap_err();
-    assert!(matches!(bad, Error::Text(TextError::Columns { line: 2, found: 4, expected: 2, .. })), "{bad}");
-    assert_eq!(heading("first,second\n1,1e-9\n2,1.1e-9\n"), ("time", String::new()));
+    says(&bad, "text_columns", "line 2: 4 columns separated by commas, but 2 are needed");
+    heading("first,second\n1,1e-9\n2,1.1e-9\n", "time");
     let dynamic = |text: &str| error(fitted(Experiment::Dynamic, text.as_bytes(), Units::SI));
     let bad = dynamic("frequency,storage modulus,strain\n1,1e6,0.1\n");
-    assert!(matches!(bad, TableError::StorageOnly { line: 1 }), "{bad}");
+    says(&bad, "table_storage_only", "line 1: ");
     // a heading may be a comment
     for mark in ["", "# "] {
         let bad = dynamic(&format!("{mark}f [Hz],G',G''\n1,1e6,1e5\n"));
-        let TableError::Unit { line: 1, column: 1, unit, size: Some(size), .. } = &bad else { panic!("{bad}") };
-        assert_eq!((&**unit, *size), ("Hz", std::f64::consts::TAU));
+        says(&bad, "table_unit", "line 1, column 1: the heading \"f [Hz]\" says Hz, but ");
+        assert!(bad.to_string().ends_with("; of Hz it is 6.28319"), "{bad}");
     }
     // tan δ in percent
     let table = |heading: &str, by: f64| {
@@ -74,7 +72,7 @@ fn errors_name_the_line() {
     let missing = Measurements::from_csv(Experiment::Creep, "no/such/file.csv", Units::SI, format).unwrap_err();
     let binary = fitted(Experiment::Creep, &[0xff, 0x00, 0x00, 0x31], Units::SI).unwrap_err();
     for (bad, said) in [(missing, "no/such/file.csv"), (binary, "")] {
-        let is_unreadable = matches!(bad, Error::File(FileError::Unreadable { .. }));
+        let is_unreadable = matches!(bad, Error::Unreadable { .. });
         assert!(is_unreadable && bad.to_string().contains(said), "{bad}");
     }
 }

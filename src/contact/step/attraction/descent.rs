@@ -20,7 +20,7 @@ use super::front::{Front, Moved};
 use super::passes::InGap;
 use super::{Attracted, AttractedStep};
 use crate::equilibrium::Trial;
-use crate::error::{AdhesionError, Error, Result, StepError};
+use crate::error::{Error, Result, StepError};
 use crate::load::Load;
 use crate::parallel::for_each_band;
 use crate::solver::Solution;
@@ -235,7 +235,7 @@ impl Descent<'_> {
         }
         let (pull, by_force) = (-wanted.total, matches!(step.loads[0], Load::Force { .. }));
         if by_force && pull > 0.0 && gradient.at_wall == 0.0 && gradient.attraction <= CARRIED * pull {
-            return Err(AdhesionError::PulledOff { time, force: -pull * state.held.region.cell_area() }.into());
+            return Err(Error::PulledOff { time, force: -pull * state.held.region.cell_area() });
         }
         Ok(())
     }

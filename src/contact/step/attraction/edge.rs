@@ -4,7 +4,8 @@ use super::Attracted;
 use crate::attraction::Attraction;
 use crate::contact::{Edge, Scene, Step};
 use crate::equilibrium::Region;
-use crate::error::{AdhesionError, Result};
+use crate::error::{Refusal, Result};
+use crate::rounded::{TIME, rounded};
 use crate::solver::Solution;
 
 /// Attraction beyond the edge that pulls by more than this part of the force is refused, and warned of from this
@@ -58,7 +59,20 @@ impl Attracted {
         let (ground, share) = (&scene.ground, self.report.beyond_edge);
         if ground.settings.edge == Edge::Refuse && share > MOST {
             let (time, lengths) = (step.interval.time, ground.grid.lengths());
-            return Err(AdhesionError::BeyondEdge { time, share, lengths }.into());
+            let what = format!(
+                "at t = {} s the attraction beyond the edge of the grid of {} × {} m would add {:.0} % of the force, \
+                 where 5 % are allowed",
+                rounded(time, TIME),
+                rounded(lengths[0], 4),
+                rounded(lengths[1], 4),
+                100.0 * share
+            );
+            let remedy = ": enlarge the grid, give a surface that repeats a periodic body (InfluenceKernel::periodic), \
+                or set Settings::edge to Edge::Allow if the body ends there";
+            return Err(Refusal::value("adhesion_beyond_edge", what, remedy)
+                .naming("part of the force beyond the edge")
+                .valued(share)
+                .into());
         }
         Ok(())
     }

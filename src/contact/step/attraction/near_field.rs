@@ -13,8 +13,9 @@ use super::descent::Descent;
 use super::{Attracted, AttractedStep};
 use crate::equilibrium::Trial;
 use crate::equilibrium::window::Window;
-use crate::error::{AdhesionError, Error, Result};
+use crate::error::{Error, Refusal, Result};
 use crate::parallel::for_each_band;
+use crate::rounded::{TIME, rounded};
 use crate::solver::{Counts, Solution};
 
 /// Rounds end where the new F (z − s) changes s by this part of what the tolerance allows.
@@ -74,7 +75,13 @@ impl AttractedStep<'_> {
     /// The error of a descent that leaves such a change.
     pub(super) fn not_converged(&self, own: &Attracted, change: f64) -> Error {
         let (time, tolerance) = (self.step.interval.time, self.limit());
-        AdhesionError::NotConverged { time, passes: own.report.passes, change, tolerance }.into()
+        let what = format!(
+            "at t = {} s {} passes left a change of the traction of {change:.1e} of its maximum, where \
+             {tolerance:.1e} is allowed",
+            rounded(time, TIME),
+            own.report.passes
+        );
+        Refusal::search("adhesion_not_converged", what, ": take a shorter step").into()
     }
 }
 
@@ -107,7 +114,18 @@ impl Descent<'_> {
             return Err(problem.not_converged(self.own, last));
         }
         let (time, lengths) = (problem.step.interval.time, problem.scene.ground.grid.lengths());
-        Err(AdhesionError::FillsGrid { time, share, most: MAX_EXTENT, lengths }.into())
+        let what = format!(
+            "at t = {} s no state was found: contact and attraction span {:.0} % of the grid of {} × {} m, where \
+             steps end for certain up to {:.0} %",
+            rounded(time, TIME),
+            100.0 * share,
+            rounded(lengths[0], 4),
+            rounded(lengths[1], 4),
+            100.0 * MAX_EXTENT
+        );
+        let remedy = ": enlarge the grid (beyond a body that ends the gap is infinite), or give a surface that \
+            repeats a periodic body";
+        Err(Refusal::search("adhesion_fills_grid", what, remedy).into())
     }
 
     /// Computes with N in the place of K.

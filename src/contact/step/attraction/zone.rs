@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::Grid;
 use crate::adhesion::{Attraction, laws, softening};
 use crate::contact::{Builder, Scene};
-use crate::error::{AdhesionError, Result, length, or_failure_of, positive};
+use crate::error::{Error, Refusal, Result, length, or_failure_of, positive};
 use crate::rheology::Material;
 
 impl Builder {
@@ -16,7 +16,7 @@ impl Builder {
     /// [`Fields::traction_into`](crate::fields::Fields::traction_into) the net traction, which carries the force
     /// and displaces the bodies. The whole grid is computed, [`Settings::window`](crate::contact::Settings::window)
     /// does not count. A contact that tries to come off under a given force fails with
-    /// [`AdhesionError::PulledOff`](crate::adhesion::AdhesionError::PulledOff); under a given approach or a spring
+    /// [`Error::PulledOff`]; under a given approach or a spring
     /// it comes off within a step.
     ///
     /// The mesh must resolve the zone in which the attraction acts, of the length E* ρ²/w, or E* over the steepest
@@ -71,7 +71,10 @@ pub(in crate::contact) fn resolved_softening(law: &dyn Attraction, material: &Ma
     let of_law = || {
         positive("work of separation", law.work())?;
         length("range of the attraction", law.range())?;
-        laws::usable(law).map_err(AdhesionError::Law)?;
+        laws::usable(law).map_err(|violation| {
+            let what = format!("the attraction breaks a law: {violation}");
+            Refusal::value("adhesion_law", what, "; adhesion::laws::all tests it")
+        })?;
         Ok(softening(law))
     };
     let softening = or_failure_of(|| law.failure(), of_law)?;
@@ -80,7 +83,7 @@ pub(in crate::contact) fn resolved_softening(law: &dyn Attraction, material: &Ma
         return Ok(softening);
     }
     let (spacing, range) = (longer_side(grid) * cells / LEAST_ZONE, law.range() * (LEAST_ZONE / cells).sqrt());
-    Err(AdhesionError::ZoneNotResolved { cells, minimum: LEAST_ZONE, spacing, range }.into())
+    Err(Error::ZoneNotResolved { cells, minimum: LEAST_ZONE, spacing, range })
 }
 
 /// Fewer cells resolve the zone badly.

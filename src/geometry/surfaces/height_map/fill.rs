@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::HeightMap;
-use crate::error::{Error, MapError, Result};
+use crate::error::{Error, Refusal, Result};
 use crate::memory;
 use crate::sum::{greatest, sum_of_pairs};
 
@@ -17,7 +17,7 @@ impl HeightMap {
     /// stretched membrane, and lies within the range of the known heights around it.
     ///
     /// # Errors
-    /// If no height is known, the iteration does not converge ([`MapError::NotFilled`]), or there is no memory for it:
+    /// If no height is known, the iteration does not converge, or there is no memory for it:
     /// 16 bytes per point, and 120 more per missing point.
     pub fn filled(self) -> Result<HeightMap> {
         self.filled_unless(&AtomicBool::new(false))
@@ -132,7 +132,12 @@ impl Laplacian {
             norm = next;
             direction.iter_mut().zip(&preconditioned).for_each(|(d, z)| *d = z + conjugation * *d);
         }
-        Err(Error::Map(MapError::NotFilled { iterations: max_iterations, residual: greatest(&residual) }))
+        let what = format!(
+            "the interpolation of the missing heights did not converge in {max_iterations} iterations: the residual \
+             is {:.1e} m",
+            greatest(&residual)
+        );
+        Err(Refusal::value("map_not_filled", what, "; crop the part without heights").into())
     }
 }
 
@@ -142,6 +147,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::nothing_known;
     use super::super::tests::map_of;
     use super::*;
 
@@ -200,7 +206,7 @@ mod tests {
             assert!((a - b).abs() < 1e-8, "{a} for {b}");
         }
         let nothing = HeightMap::new([2, 1], [1.0, 1.0], vec![f64::NAN; 2]).unwrap();
-        assert_eq!(nothing.filled(), Err(Error::Map(MapError::NothingKnown)));
+        assert_eq!(nothing.filled(), Err(nothing_known()));
     }
 
     #[test]

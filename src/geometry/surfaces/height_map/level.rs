@@ -74,10 +74,9 @@ impl HeightMap {
 
 #[cfg(test)]
 mod tests {
+    use super::super::nothing_known;
     use super::super::tests::{map_of, waves};
     use super::*;
-    use crate::error::Error;
-    use crate::geometry::MapError;
 
     fn greatest(map: &HeightMap) -> f64 {
         map.known().fold(0.0, |greatest, z| greatest.max(z.abs()))
@@ -125,6 +124,6 @@ mod tests {
         let few = map_of([3, 3], |x1, x2| if x1 == 0.0 && x2 > -0.2 { 4.0 + x2 } else { f64::NAN });
         assert!(greatest(&few.leveled(Form::Curvature).unwrap()) < 1e-13);
         let nothing = map_of([2, 2], |_, _| f64::NAN);
-        assert_eq!(nothing.leveled(Form::Mean), Err(Error::Map(MapError::NothingKnown)));
+        assert_eq!(nothing.leveled(Form::Mean), Err(nothing_known()));
     }
 }

@@ -16,7 +16,7 @@ pub use unit::LengthUnit;
 use std::fmt;
 
 use crate::Grid;
-use crate::error::{Error, LONGEST, MapError, Result, exact_length};
+use crate::error::{Error, LONGEST, Refusal, Result, exact_length};
 use crate::geometry::surfaces::height_spectrum::HeightSpectrum;
 use crate::geometry::{Geometry, Waves};
 use crate::values::Counted;
@@ -186,7 +186,7 @@ impl HeightMap {
 
     /// Refuses a map without a known height.
     pub(in crate::geometry) fn require_known(&self) -> Result<()> {
-        if self.missing < self.heights.len() { Ok(()) } else { Err(Error::Map(MapError::NothingKnown)) }
+        if self.missing < self.heights.len() { Ok(()) } else { Err(nothing_known()) }
     }
 
     /// Position of the first cell of `grid` in the map shifted by `by`: index of the nearest point, and the fraction
@@ -228,10 +228,27 @@ impl HeightMap {
     }
 }
 
+/// The error of a map without heights.
+fn nothing_known() -> Error {
+    let what = "no height is known: nothing was measured there";
+    Refusal::value("map_nothing_known", what, "; take a part of the map with heights").into()
+}
+
+/// The error of a height that overflows.
+pub(super) fn not_finite(entry: usize, value: f64) -> Error {
+    let what = format!("height {entry} of the map is {value:?}");
+    let range = ": heights must be finite and within ±1e300 m, or NaN where nothing was measured";
+    Refusal::value("map_not_finite", what, range)
+        .naming("height")
+        .valued(value)
+        .allowing("finite and within ±1e300 m, or NaN")
+        .into()
+}
+
 /// Refuses heights whose differences and sums would overflow.
 fn check_heights(heights: &[f64]) -> Result<()> {
     match heights.iter().position(|height| height.abs() > LONGEST) {
-        Some(entry) => Err(Error::Map(MapError::NotFinite { entry, value: heights[entry] })),
+        Some(entry) => Err(not_finite(entry, heights[entry])),
         None => Ok(()),
     }
 }
@@ -288,12 +305,9 @@ mod tests {
     fn bad_maps_are_refused() {
         let refused = |heights: Vec<f64>| HeightMap::new([2, 2], [1.0, 1.0], heights).unwrap_err();
         assert!(matches!(refused(vec![0.0; 3]), Error::WrongLength { len: 3, expected: 4, .. }));
-        let Error::Map(MapError::NotFinite { entry, .. }) = refused(vec![0.0, 0.0, f64::INFINITY, 0.0]) else {
-            panic!()
-        };
-        assert_eq!(entry, 2);
+        assert_eq!(refused(vec![0.0, 0.0, f64::INFINITY, 0.0]), not_finite(2, f64::INFINITY));
         // their differences and sums would overflow
-        assert!(matches!(refused(vec![1e305, 0.0, -1e308, 0.0]), Error::Map(MapError::NotFinite { entry: 0, .. })));
+        assert_eq!(refused(vec![1e305, 0.0, -1e308, 0.0]), not_finite(0, 1e305));
         assert_eq!(HeightMap::new([0, 2], [1.0, 1.0], vec![]).unwrap_err().kind(), crate::ErrorKind::Value);
     }
 

@@ -1,7 +1,8 @@
 //! Interpolation of a map onto another grid.
 
 use super::HeightMap;
-use crate::error::{Error, MapError, Result};
+use super::nothing_known;
+use crate::error::Result;
 use crate::geometry::surfaces::statistics::FLAT;
 use crate::{Grid, memory};
 
@@ -76,7 +77,7 @@ impl HeightMap {
         };
         let count = pairs().count() as f64;
         if count == 0.0 {
-            return Err(Error::Map(MapError::NothingKnown));
+            return Err(nothing_known());
         }
         let mean = pairs().map(|(z, _)| z / count).sum::<f64>();
         // in units of a power of two near the greatest height, squares stay in range without rounding
@@ -147,6 +148,6 @@ mod tests {
         assert_abs_diff_eq!(wide.height_at(0.3, 0.2).unwrap(), map.height_at(0.3, 0.2).unwrap(), epsilon = 1e-12);
         let beside = map.centered_at([5.0, 0.0]).unwrap();
         let refused = beside.resampled(&Grid::square(4, 1.0).unwrap()).unwrap_err();
-        assert_eq!(refused, Error::Map(MapError::NothingKnown));
+        assert_eq!(refused, nothing_known());
     }
 }

@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use crate::error::{Error, MapError, Result};
+use crate::error::{Error, Refusal, Result};
 use crate::input::{Quantity, readings, same};
 
 /// A unit of length in files of measured surfaces.
@@ -70,14 +70,18 @@ impl FromStr for LengthUnit {
     /// The unit of a symbol: m, cm, mm, µm (um), nm, Å (A), pm. Case matters: Mm is not a millimetre.
     fn from_str(symbol: &str) -> Result<LengthUnit> {
         let symbol = symbol.trim();
+        let unknown = || {
+            let what = format!("{symbol:?} is not a known unit of length: m, cm, mm, µm (um), nm, Å (A) or pm");
+            Refusal::file("map_unit", what, "").into()
+        };
         // of an ångström, and of 1E-9
         let is_capital = |c: char| c.is_uppercase() && !"AÅ\u{212b}E".contains(c);
         if symbol.contains(is_capital) {
-            return Err(MapError::Unit { symbol: symbol.to_owned() }.into());
+            return Err(unknown());
         }
         let mut sizes = readings(symbol).into_iter().filter(|unit| unit.0 == Quantity::LENGTH).map(|unit| unit.1);
         let known = sizes.find_map(|size| UNITS.iter().find(|(_, per_metre)| same(size * per_metre, 1.0)));
-        known.map(|unit| unit.0).ok_or_else(|| MapError::Unit { symbol: symbol.to_owned() }.into())
+        known.map(|unit| unit.0).ok_or_else(unknown)
     }
 }
 
@@ -103,8 +107,7 @@ mod tests {
             assert_eq!((unit.factor(), unit.to_metres(1.0)), (metres, metres), "{symbol}");
         }
         for symbol in ["", "Mm", "MM", "NM", "Nm", "V", "m^2", "inch"] {
-            let unknown = MapError::Unit { symbol: symbol.to_owned() };
-            assert_eq!(symbol.parse::<LengthUnit>(), Err(Error::Map(unknown)));
+            assert!(symbol.parse::<LengthUnit>().is_err_and(|error| error.code() == "map_unit"), "{symbol}");
         }
     }
 

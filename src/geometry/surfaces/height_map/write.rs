@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use crate::error::{Error, MapError, Result};
+use crate::error::{Error, Refusal, Result};
 use crate::geometry::HeightMap;
 use crate::geometry::surfaces::height_map::read::gsf;
 
@@ -94,7 +94,10 @@ impl HeightMap {
 
 fn save(mut writer: impl Write, format: &'static str, file: &[u8]) -> Result<()> {
     let written = writer.write_all(file).and_then(|()| writer.flush());
-    written.map_err(|error| MapError::Unwritable { format, reason: error.to_string(), kind: Some(error.kind()) }.into())
+    written.map_err(|error| {
+        let what = format!("the {format} file could not be written: {error}");
+        Refusal::file("map_unwritable", what, "").of_system(error.kind()).into()
+    })
 }
 
 #[cfg(test)]
@@ -152,6 +155,6 @@ mod tests {
         assert!(matches!(high.write_gsf(Vec::new()), Err(Error::OutOfRange { field: "height", .. })));
         let mut short = [0; 5];
         let error = map().write_sdf(&mut short[..]).unwrap_err();
-        assert!(matches!(error, Error::Map(MapError::Unwritable { format: "SDF", .. })), "{error}");
+        assert!(error.to_string().starts_with("the SDF file could not be written"), "{error}");
     }
 }

@@ -13,7 +13,8 @@ use num_complex::Complex64;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-use crate::error::{Error, MapError, Result, within};
+use crate::error::{Error, Result, within};
+use crate::geometry::surfaces::height_map::not_finite;
 use crate::geometry::surfaces::height_spectrum::{HeightSpectrum, wave_numbers};
 use crate::geometry::{Geometry, HeightMap, Waves};
 use crate::parallel::{Rows, part};
@@ -113,7 +114,7 @@ fn heights(grid: &Grid, spec: &RoughSpec, rows: &Rows, bytes: u128) -> Result<Ve
     let own = invalid.map_or([f64::INFINITY, 0.0], |k| [(rows.own().start * n2 + k) as f64, heights[k]]);
     let [entry, value] = rows.join(own, |a, b| if b[0] < a[0] { b } else { a });
     if entry.is_finite() {
-        return Err(Error::Map(MapError::NotFinite { entry: entry as usize, value }));
+        return Err(not_finite(entry as usize, value));
     }
     Ok(heights)
 }
@@ -284,7 +285,7 @@ mod tests {
         assert_eq!(refused(RoughSpec { longest: 0.2, ..SPEC }), "roll-off wavelength");
         assert_eq!(refused(RoughSpec { roll_off: 0.01, ..SPEC }), "roll-off wavelength");
         let fine = Rough::new(&grid, RoughSpec { shortest: 0.06, ..SPEC }).unwrap_err();
-        assert!(matches!(fine, Error::Map(MapError::TooFine { .. })), "{fine}");
+        assert!(fine.code() == "map_too_fine", "{fine}");
         assert_eq!(refused(RoughSpec { roughness: Roughness::RmsSlope(0.0), ..SPEC }), "rms slope");
         let lay = Anisotropy { ratio: 0.5, direction: 0.0 };
         assert_eq!(refused(RoughSpec { anisotropy: lay, ..SPEC }), "ratio of the anisotropy");

@@ -2,7 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use crate::error::{MapError, Result, finite, positive, within};
+use crate::error::{Refusal, Result, finite, positive, within};
+use crate::rounded::rounded;
 use crate::{Axis, Grid};
 
 value! {
@@ -120,7 +121,20 @@ impl RoughSpec {
             let (shortest, minimum) = (self.shortest, 2.0 * spacing[axis]);
             if shortest < minimum * (1.0 - 1e-12) {
                 let needed = (minimum * cells[axis] as f64 / shortest * (1.0 - 1e-12)).ceil() as usize;
-                return Err(MapError::TooFine { shortest, minimum, axis: Axis::BOTH[axis], cells: needed }.into());
+                let axis = Axis::BOTH[axis];
+                let what = format!(
+                    "shortest wavelength = {} m is not allowed: it must be at least two cells of the grid, which are \
+                     {} m along {axis}",
+                    rounded(shortest, 4),
+                    rounded(minimum, 4)
+                );
+                let remedy = format!(": take a longer wavelength, or {needed} cells along {axis}");
+                let range = "at least two cells of the grid";
+                return Err(Refusal::value("map_too_fine", what, &remedy)
+                    .naming("shortest wavelength")
+                    .valued(shortest)
+                    .allowing(range)
+                    .into());
             }
         }
         Ok(())

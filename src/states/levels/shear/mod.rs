@@ -12,7 +12,7 @@ mod loss;
 
 use std::ops::Range;
 
-use crate::error::{Result, StatesError, StepError};
+use crate::error::{Error, Result, StepError};
 use crate::states::curve::ElasticStates;
 use crate::states::levels::{Demand, GROUPS, Group, Levels, ROUNDING, Wanted};
 
@@ -218,7 +218,7 @@ impl Levels {
         let carried = self.spans().map(carried).sum::<f64>() + beyond;
         let limit = if level > 0.0 { carried / compliance } else { 0.0 };
         if force.abs() > limit * (1.0 + ROUNDING) {
-            return Err(StatesError::Slides { time, over_limit: force.abs() / limit }.into());
+            return Err(Error::Slides { time, over_limit: force.abs() / limit, direction: None });
         }
         Ok(())
     }

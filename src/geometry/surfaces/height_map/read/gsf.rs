@@ -4,7 +4,8 @@
 use std::io::Read;
 
 use super::{First, Header, Kind, Number, bytes, count};
-use crate::error::{MapError, Result};
+use super::{missing, wrong_magic};
+use crate::error::{Refusal, Result};
 use crate::geometry::{HeightMap, LengthUnit};
 use crate::input::by_lines;
 
@@ -31,15 +32,15 @@ impl HeightMap {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Map`](crate::Error::Map) if the file cannot be read, is malformed, or lacks a unit; as
+    /// If the file cannot be read, is malformed, or lacks a unit; as
     /// [`HeightMap::new`] if its map is invalid.
     pub fn from_gsf(reader: impl Read, fallback: Option<LengthUnit>) -> Result<HeightMap> {
         let file = bytes(reader, FORMAT)?;
         let Some(rest) = file.strip_prefix(MAGIC.as_bytes()) else {
-            return Err(MapError::Magic { format: FORMAT, magic: MAGIC.trim_end() }.into());
+            return Err(wrong_magic(FORMAT, MAGIC.trim_end()));
         };
         let Some(end) = rest.iter().position(|&byte| byte == 0) else {
-            return Err(MapError::Missing { format: FORMAT, key: "NUL byte after the header" }.into());
+            return Err(missing(FORMAT, "NUL byte after the header"));
         };
         // titles may contain any bytes, and units are in Latin-1 in some files
         let (lines, _) = by_lines(&rest[..end]);
@@ -47,7 +48,11 @@ impl HeightMap {
         let unit = |key: &'static str| match (header.get(key), fallback) {
             (Some(symbol), _) => symbol.parse(),
             (None, Some(unit)) => Ok(unit),
-            (None, None) => Err(MapError::NoUnit { format: FORMAT, key }.into()),
+            (None, None) => {
+                let what = format!("the {FORMAT} file has no {key}, the unit of its numbers");
+                let remedy = ": give it, as to HeightMap::from_gsf";
+                Err(Refusal::file("map_no_unit", what, remedy).naming(key).into())
+            }
         };
         let cells = [header.count("XRes")?, header.count("YRes")?];
         let lengths = [header.positive("XReal")?, header.positive("YReal")?];
@@ -59,7 +64,7 @@ impl HeightMap {
         let start = header_length + 4 - header_length % 4;
         let padding = file.get(header_length..start).unwrap_or_default();
         if padding.is_empty() || padding.iter().any(|&byte| byte != 0) {
-            return Err(MapError::Missing { format: FORMAT, key: "padding of NUL bytes to a multiple of four" }.into());
+            return Err(missing(FORMAT, "padding of NUL bytes to a multiple of four"));
         }
         let rows = Number::little(Kind::Float, 4).decode_all(FORMAT, &file[start..], count, true)?;
         HeightMap::from_rows(cells, spacing, &rows, First::Top, |height| vertical.to_metres(height))
@@ -68,6 +73,7 @@ impl HeightMap {
 
 #[cfg(test)]
 mod tests {
+    use super::super::{entry, wrong_size};
     use super::*;
     use crate::Error;
 
@@ -108,11 +114,10 @@ mod tests {
     fn errors_of_malformed_files_name_the_defect() {
         let read = |header: &str, heights: &[f32]| HeightMap::from_gsf(&file(header, heights)[..], None).unwrap_err();
         let six = [1.0; 6];
-        let size =
-            |found| MapError::Size { format: FORMAT, what: "bytes of heights", found, expected: 24, exact: true };
-        assert_eq!(read(FULL, &six[1..]), size(20).into());
-        assert_eq!(read(FULL, &[1.0; 7]), size(28).into());
-        let missing = |key| Error::Map(MapError::Missing { format: FORMAT, key });
+        let size = |found| wrong_size(FORMAT, "bytes of heights", found, 24);
+        assert_eq!(read(FULL, &six[1..]), size(20));
+        assert_eq!(read(FULL, &[1.0; 7]), size(28));
+        let missing = |key| missing(FORMAT, key);
         for (key, start) in [("XRes", 0), ("YRes", 9)] {
             let cut = format!("{}Other{}", &FULL[..start], &FULL[start..]);
             assert_eq!(read(&cut, &six), missing(key));
@@ -120,15 +125,14 @@ mod tests {
         let without = |name: &str| FULL.replace(name, "Other");
         assert_eq!(read(&without("XReal"), &six), missing("XReal"));
         assert_eq!(read(&without("YReal"), &six), missing("YReal"));
-        assert_eq!(read(&without("XYUnits"), &six), MapError::NoUnit { format: FORMAT, key: "XYUnits" }.into());
-        assert_eq!(read(&FULL.replace("nm", ""), &six), MapError::NoUnit { format: FORMAT, key: "ZUnits" }.into());
-        assert_eq!(read(&FULL.replace("nm", "V"), &six), MapError::Unit { symbol: "V".into() }.into());
-        let text = "three".to_owned();
-        let entry = MapError::Entry { format: FORMAT, key: "XRes", text, allowed: "a whole number" };
-        assert_eq!(read(&FULL.replace("XRes = 3", "XRes = three"), &six), entry.into());
+        assert!(read(&without("XYUnits"), &six).is("map_no_unit", "XYUnits"));
+        assert!(read(&FULL.replace("nm", ""), &six).is("map_no_unit", "ZUnits"));
+        assert!(read(&FULL.replace("nm", "V"), &six).to_string().starts_with("\"V\" is not a known unit of length"));
+        let entry = entry(FORMAT, "XRes", "three", "a whole number");
+        assert_eq!(read(&FULL.replace("XRes = 3", "XRes = three"), &six), entry);
         for length in ["0", "-6e-3", "inf", "nan"] {
             let error = read(&FULL.replace("6e-3", length), &six);
-            assert!(matches!(error, Error::Map(MapError::Entry { key: "XReal", .. })), "{error}");
+            assert!(error.is("map_entry", "XReal"), "{error}");
         }
         let zero = read(&FULL.replace("XRes = 3", "XRes = 0"), &six);
         assert!(matches!(zero, Error::CountOutOfRange { value: 0, .. }), "{zero}");
@@ -143,12 +147,12 @@ mod tests {
 
     #[test]
     fn damaged_headers_are_refused() {
-        let magic = MapError::Magic { format: FORMAT, magic: "Gwyddion Simple Field 1.0" };
-        assert_eq!(HeightMap::from_gsf(&b"Gwyddion Simple Field 2.0\n"[..], None).unwrap_err(), magic.clone().into());
-        assert_eq!(HeightMap::from_gsf(&b""[..], None).unwrap_err(), magic.into());
+        let magic = wrong_magic(FORMAT, "Gwyddion Simple Field 1.0");
+        assert_eq!(HeightMap::from_gsf(&b"Gwyddion Simple Field 2.0\n"[..], None).unwrap_err(), magic);
+        assert_eq!(HeightMap::from_gsf(&b""[..], None).unwrap_err(), magic);
         let unterminated = format!("{MAGIC}{FULL}");
         let error = HeightMap::from_gsf(unterminated.as_bytes(), None).unwrap_err();
-        assert_eq!(error, MapError::Missing { format: FORMAT, key: "NUL byte after the header" }.into());
+        assert_eq!(error, missing(FORMAT, "NUL byte after the header"));
         for cut in 0..4 {
             let mut truncated = format!("{MAGIC}{FULL}").into_bytes();
             truncated.extend(std::iter::repeat_n(0, cut));

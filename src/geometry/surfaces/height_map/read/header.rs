@@ -1,6 +1,7 @@
 //! Headers of entries that are found by their keys.
 
-use crate::error::{MapError, Result};
+use super::{entry, missing};
+use crate::error::{Error, Result};
 use crate::input::number;
 
 /// Returns the value of an entry by its key.
@@ -38,12 +39,12 @@ impl<'a> Header<'a> {
     }
 
     pub(super) fn require(&self, key: &'static str) -> Result<&'a str> {
-        self.get(key).ok_or_else(|| MapError::Missing { format: self.format, key }.into())
+        self.get(key).ok_or_else(|| missing(self.format, key))
     }
 
     /// The error of an entry that has another value than allowed.
-    pub(super) fn error(&self, key: &'static str, text: &str, allowed: &'static str) -> MapError {
-        MapError::Entry { format: self.format, key, text: text.to_owned(), allowed }
+    pub(super) fn error(&self, key: &'static str, text: &str, allowed: &'static str) -> Error {
+        entry(self.format, key, text, allowed)
     }
 
     /// Accepts a header whose entry `key` is `allowed`.
@@ -54,23 +55,23 @@ impl<'a> Header<'a> {
     /// The value of an entry, which must be one of `values`.
     pub(super) fn one_of(&self, key: &'static str, values: &[&str], allowed: &'static str) -> Result<&'a str> {
         let text = self.require(key)?;
-        if values.contains(&text) { Ok(text) } else { Err(self.error(key, text, allowed).into()) }
+        if values.contains(&text) { Ok(text) } else { Err(self.error(key, text, allowed)) }
     }
 
     /// A whole number. The grid checks the range of numbers of cells.
     pub(super) fn count(&self, key: &'static str) -> Result<usize> {
         let text = self.require(key)?;
-        text.parse().map_err(|_| self.error(key, text, "a whole number").into())
+        text.parse().map_err(|_| self.error(key, text, "a whole number"))
     }
 
     pub(super) fn finite(&self, key: &'static str) -> Result<f64> {
         let text = self.require(key)?;
         let found = number(text, false).ok_or_else(|| self.error(key, text, "a number with a decimal point"))?;
-        if found.is_finite() { Ok(found) } else { Err(self.error(key, text, "finite").into()) }
+        if found.is_finite() { Ok(found) } else { Err(self.error(key, text, "finite")) }
     }
 
     pub(super) fn positive(&self, key: &'static str) -> Result<f64> {
         let found = self.finite(key)?;
-        if found > 0.0 { Ok(found) } else { Err(self.error(key, self.require(key)?, "> 0").into()) }
+        if found > 0.0 { Ok(found) } else { Err(self.error(key, self.require(key)?, "> 0")) }
     }
 }

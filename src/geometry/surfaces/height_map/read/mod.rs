@@ -20,7 +20,7 @@ mod xyz;
 use std::io::Read;
 use std::path::Path;
 
-use crate::error::{MapError, Result};
+use crate::error::{Error, Refusal, Result};
 use crate::file::open;
 use crate::geometry::HeightMap;
 use crate::{Grid, input, memory};
@@ -55,11 +55,10 @@ impl HeightMap {
     /// centred on its rectangle.
     ///
     /// # Errors
-    /// [`Error::Map`](crate::Error::Map) if the extension is unknown, or the file cannot be read or is malformed; as
+    /// If the extension is unknown, or the file cannot be read or is malformed; as
     /// [`HeightMap::new`] if its map is invalid.
     pub fn read(path: impl AsRef<Path>) -> Result<HeightMap> {
         let path = path.as_ref();
-        let name = || path.display().to_string();
         let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
         match extension.as_str() {
             "gsf" => HeightMap::from_gsf(open(path)?, None),
@@ -67,7 +66,12 @@ impl HeightMap {
             "sur" | "pro" => HeightMap::from_sur(open(path)?),
             #[cfg(feature = "x3p")]
             "x3p" => HeightMap::from_x3p(open(path)?),
-            _ => Err(MapError::Extension { file: name(), known: KNOWN }.into()),
+            _ => {
+                let what = format!("{}: the extension must be {KNOWN}", path.display());
+                let remedy = "; other formats do not store the side lengths of a map: use HeightMap::from_npy, \
+                    from_text or from_xyz; instrument formats (.opd, .ibw, .spm, .tif) are exported as GSF by Gwyddion";
+                Err(Refusal::file("map_extension", what, remedy).into())
+            }
         }
     }
 
@@ -105,7 +109,7 @@ fn listed<'a>(
     is_word: impl Fn(&str) -> bool,
     count: usize,
     format: &'static str,
-    refuse: impl Fn(&str) -> MapError,
+    refuse: impl Fn(&str) -> Error,
 ) -> Result<Vec<f64>> {
     let height = |word: &str| match word.parse::<f64>() {
         _ if is_word(word) => Ok(f64::NAN),
@@ -114,10 +118,29 @@ fn listed<'a>(
         _ => Err(refuse(word)),
     };
     let rows: Vec<f64> = words.map(height).collect::<Result<_, _>>()?;
-    if rows.len() == count { Ok(rows) } else { Err(wrong_size(format, "heights", rows.len(), count).into()) }
+    if rows.len() == count { Ok(rows) } else { Err(wrong_size(format, "heights", rows.len(), count)) }
 }
 
 /// The error of a file with `found` items where `expected` are needed; all items are counted.
-fn wrong_size(format: &'static str, what: &'static str, found: usize, expected: usize) -> MapError {
-    MapError::Size { format, what, found: found as u64, expected: expected as u64, exact: true }
+fn wrong_size(format: &'static str, what: &'static str, found: usize, expected: usize) -> Error {
+    let what = format!("the {format} file should hold {expected} {what}, but holds {found}");
+    Refusal::file("map_size", what, "").into()
+}
+
+/// The error of a file that does not begin as its format does.
+fn wrong_magic(format: &'static str, magic: &'static str) -> Error {
+    let what = format!("not a {format} file: it does not begin with {magic} and the line end of its format");
+    Refusal::file("map_magic", what, "; export it anew, or as GSF by Gwyddion").into()
+}
+
+/// The error of a file without a required part.
+fn missing(format: &'static str, key: &'static str) -> Error {
+    let what = format!("the {format} file has no {key}");
+    Refusal::file("map_missing", what, ": add it, or export the map anew").naming(key).into()
+}
+
+/// The error of an entry of a header that has another value than allowed.
+fn entry(format: &'static str, key: &'static str, text: &str, allowed: &'static str) -> Error {
+    let what = format!("the {format} file has {key} = {text:?}, which must be {allowed}");
+    Refusal::file("map_entry", what, "").naming(key).allowing(allowed).into()
 }

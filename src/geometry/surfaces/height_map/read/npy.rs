@@ -5,7 +5,8 @@
 use std::io::Read;
 
 use super::{Header, Kind, Number, bytes, wrong_size};
-use crate::error::{MapError, Result};
+use super::{entry, missing, wrong_magic};
+use crate::error::Result;
 use crate::file::npy::MAGIC;
 use crate::geometry::{HeightMap, LengthUnit};
 use crate::{Grid, memory};
@@ -23,7 +24,7 @@ impl HeightMap {
     /// first axis points down, by `numpy.flipud(image).T`.
     ///
     /// # Errors
-    /// [`Error::Map`](crate::Error::Map) if the file cannot be read, is malformed or contains another type of
+    /// If the file cannot be read, is malformed or contains another type of
     /// array; as [`HeightMap::new`] if its map is invalid.
     pub fn from_npy(reader: impl Read, lengths: [f64; 2], unit: LengthUnit) -> Result<HeightMap> {
         let file = bytes(reader, FORMAT)?;
@@ -42,13 +43,13 @@ impl HeightMap {
         let fortran = match header.require("fortran_order")? {
             "True" => true,
             "False" => false,
-            text => return Err(header.error("fortran_order", text, "True or False").into()),
+            text => return Err(header.error("fortran_order", text, "True or False")),
         };
         let text = header.require("shape")?;
         let sides = text.strip_prefix('(').and_then(|text| text.split_once(')')).map_or("", |(sides, _)| sides);
         let sides = sides.split(',').map(str::trim).filter(|side| !side.is_empty());
         let sides: Result<Vec<usize>, _> = sides.map(str::parse).collect();
-        let Ok(&[n1, n2]) = sides.as_deref() else { return Err(header.error("shape", text, "two numbers").into()) };
+        let Ok(&[n1, n2]) = sides.as_deref() else { return Err(header.error("shape", text, "two numbers")) };
         let count = Grid::new([n1, n2], lengths)?.len();
         let stored = number.decode_all(FORMAT, data, count, true)?;
         let index = |i: usize, j: usize| if fortran { j * n1 + i } else { i * n2 + j };
@@ -60,20 +61,17 @@ impl HeightMap {
 /// Splits a file into header and data.
 fn split(file: &[u8]) -> Result<(String, &[u8])> {
     let Some(rest) = file.strip_prefix(MAGIC) else {
-        return Err(MapError::Magic { format: FORMAT, magic: "\\x93NUMPY" }.into());
+        return Err(wrong_magic(FORMAT, "\\x93NUMPY"));
     };
     let (length, start) = match *rest {
         [1, _, a, b, ..] => (usize::from(u16::from_le_bytes([a, b])), 4),
         [2 | 3, _, a, b, c, d, ..] => (u32::from_le_bytes([a, b, c, d]) as usize, 6),
-        [1..=3, ..] | [] => return Err(MapError::Missing { format: FORMAT, key: "header" }.into()),
-        [version, ..] => {
-            let (text, allowed) = (version.to_string(), "1, 2 or 3");
-            return Err(MapError::Entry { format: FORMAT, key: "version", text, allowed }.into());
-        }
+        [1..=3, ..] | [] => return Err(missing(FORMAT, "header")),
+        [version, ..] => return Err(entry(FORMAT, "version", &version.to_string(), "1, 2 or 3")),
     };
     let rest = &rest[start..];
     if rest.len() < length {
-        return Err(wrong_size(FORMAT, "bytes of header", rest.len(), length).into());
+        return Err(wrong_size(FORMAT, "bytes of header", rest.len(), length));
     }
     let (header, data) = rest.split_at(length);
     // Python strings may have either kind of quotes
@@ -138,31 +136,30 @@ mod tests {
         let header = "{'descr': '|i1', 'fortran_order': False, 'shape': (2, 3), }";
         let with = |from: &str, to: &str| read(&file(&header.replace(from, to), &[0; 6])).unwrap_err();
         for key in ["descr", "fortran_order", "shape"] {
-            assert_eq!(with(key, "other"), MapError::Missing { format: FORMAT, key }.into());
+            assert_eq!(with(key, "other"), missing(FORMAT, key));
         }
         for descr in ["'<f2'", "'<c8'", "'|O'", "'<U3'", "'<i3'", "'=f8'", "''", "'µ'", "[('a', '<f8')]", "'<f80'", "7"]
         {
             let error = with("'|i1'", descr);
-            assert!(matches!(error, Error::Map(MapError::Entry { key: "descr", .. })), "{error}");
+            assert!(error.is("map_entry", "descr"), "{error}");
         }
         for shape in ["()", "(6,)", "(1, 2, 3)", "(2, x)", "(2, -3)", "2, 3", "(2, 3", "(99999999999999999999, 1)"] {
             let error = with("(2, 3)", shape);
-            assert!(matches!(error, Error::Map(MapError::Entry { key: "shape", .. })), "{error}");
+            assert!(error.is("map_entry", "shape"), "{error}");
         }
-        assert!(matches!(with("False", "None"), Error::Map(MapError::Entry { key: "fortran_order", .. })));
+        assert!(with("False", "None").is("map_entry", "fortran_order"));
         assert!(matches!(with("(2, 3)", "(0, 3)"), Error::CountOutOfRange { value: 0, .. }));
         assert!(matches!(with("(2, 3)", "(18446744073709551615, 3)"), Error::CountOutOfRange { .. }));
-        let size =
-            |found, expected| MapError::Size { format: FORMAT, what: "bytes of heights", found, expected, exact: true };
-        assert_eq!(with("(2, 3)", "(4000000000, 1)"), size(6, 4_000_000_000).into());
-        assert_eq!(with("(2, 3)", "(2, 2)"), size(6, 4).into());
+        let size = |found, expected| wrong_size(FORMAT, "bytes of heights", found, expected);
+        assert_eq!(with("(2, 3)", "(4000000000, 1)"), size(6, 4_000_000_000));
+        assert_eq!(with("(2, 3)", "(2, 2)"), size(6, 4));
         let whole = file(header, &[0; 6]);
         for length in 0..whole.len() {
             assert!(read(&whole[..length]).is_err(), "{length}");
         }
-        assert!(matches!(read(b"\x93NUMPX"), Err(Error::Map(MapError::Magic { .. }))));
-        assert!(matches!(read(b"\x93NUMPY\x09\0\0\0\0\0"), Err(Error::Map(MapError::Entry { key: "version", .. }))));
+        assert!(read(b"\x93NUMPX").is_err_and(|error| error.code() == "map_magic"));
+        assert!(read(b"\x93NUMPY\x09\0\0\0\0\0").is_err_and(|error| error.is("map_entry", "version")));
         let absurd = b"\x93NUMPY\x02\0\xff\xff\xff\xff{}";
-        assert!(matches!(read(absurd), Err(Error::Map(MapError::Size { what: "bytes of header", .. }))));
+        assert!(read(absurd).is_err_and(|error| error.to_string().contains("bytes of header, but holds")));
     }
 }

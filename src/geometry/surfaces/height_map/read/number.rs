@@ -60,7 +60,7 @@ impl Number {
     pub(super) fn decode_all(self, format: &'static str, data: &[u8], count: usize, exact: bool) -> Result<Vec<f64>> {
         let expected = count.saturating_mul(self.size);
         if data.len() < expected || exact && data.len() > expected {
-            return Err(wrong_size(format, "bytes of heights", data.len(), expected).into());
+            return Err(wrong_size(format, "bytes of heights", data.len(), expected));
         }
         let height = |bytes| Some(self.decode(bytes)).filter(|height| height.abs() < MISSING).unwrap_or(f64::NAN);
         let numbers = data.chunks_exact(self.size).take(count).map(height);

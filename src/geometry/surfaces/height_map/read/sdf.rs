@@ -8,7 +8,8 @@
 use std::io::Read;
 
 use super::{First, Header, Kind, Number, bytes, count, listed, wrong_size};
-use crate::error::{MapError, Result};
+use super::{missing, wrong_magic};
+use crate::error::Result;
 use crate::geometry::HeightMap;
 
 const FORMAT: &str = "SDF";
@@ -40,14 +41,14 @@ impl HeightMap {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Map`](crate::Error::Map) if the file cannot be read or is malformed, compressed or of an unknown
+    /// If the file cannot be read or is malformed, compressed or of an unknown
     /// type; as [`HeightMap::new`] if its map is invalid.
     pub fn from_sdf(reader: impl Read) -> Result<HeightMap> {
         let file = bytes(reader, FORMAT)?;
         match file.get(..8) {
             Some(b"aISO-1.0" | b"aBCR-1.0") => from_text(&String::from_utf8_lossy(&file[8..])),
             Some(b"bISO-1.0" | b"bBCR-1.0") => from_binary(&file),
-            _ => Err(MapError::Magic { format: FORMAT, magic: "aISO-1.0, aBCR-1.0, bISO-1.0 or bBCR-1.0" }.into()),
+            _ => Err(wrong_magic(FORMAT, "aISO-1.0, aBCR-1.0, bISO-1.0 or bBCR-1.0")),
         }
     }
 }
@@ -59,7 +60,7 @@ fn described(header: &Header<'_>) -> Result<([usize; 2], [f64; 2], f64)> {
     let scale = header.positive("Zscale")?;
     for key in ["Compression", "CheckType"] {
         if header.count(key)? != 0 {
-            return Err(header.error(key, header.require(key)?, "0 (none)").into());
+            return Err(header.error(key, header.require(key)?, "0 (none)"));
         }
     }
     Ok((cells, spacing, scale))
@@ -67,7 +68,7 @@ fn described(header: &Header<'_>) -> Result<([usize; 2], [f64; 2], f64)> {
 
 fn from_text(text: &str) -> Result<HeightMap> {
     let Some((head, rest)) = text.split_once("\n*") else {
-        return Err(MapError::Missing { format: FORMAT, key: "line * after the header" }.into());
+        return Err(missing(FORMAT, "line * after the header"));
     };
     let header = Header::of_lines(FORMAT, head);
     // texts have numbers of each type
@@ -82,7 +83,7 @@ fn from_text(text: &str) -> Result<HeightMap> {
 
 fn from_binary(file: &[u8]) -> Result<HeightMap> {
     let Some((binary, mut data)) = file.split_at_checked(BINARY_HEADER) else {
-        return Err(wrong_size(FORMAT, "bytes of header", file.len(), BINARY_HEADER).into());
+        return Err(wrong_size(FORMAT, "bytes of header", file.len(), BINARY_HEADER));
     };
     let u16_at = |at: usize| u16::from_le_bytes([binary[at], binary[at + 1]]);
     let f64_at = |at: usize| f64::from_le_bytes(std::array::from_fn(|k| binary[at + k]));
@@ -101,7 +102,7 @@ fn from_binary(file: &[u8]) -> Result<HeightMap> {
         "5" => Number::little(Kind::Signed, 2),
         "6" => Number::little(Kind::Signed, 4),
         "7" => Number::little(Kind::Float, 8),
-        other => return Err(header.error("DataType", other, "3, 4, 5, 6 or 7 (signed)").into()),
+        other => return Err(header.error("DataType", other, "3, 4, 5, 6 or 7 (signed)")),
     };
     let count = count(cells, spacing)?;
     if data.len() as u64 == count as u64 * number.size as u64 + 8 {
@@ -114,6 +115,7 @@ fn from_binary(file: &[u8]) -> Result<HeightMap> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::entry;
     use super::super::tests::binary_sdf as binary;
     use super::*;
     use crate::Error;
@@ -171,41 +173,31 @@ mod tests {
         };
         let keys = ["NumPoints", "NumProfiles", "Xscale", "Yscale", "Zscale", "Compression", "CheckType"];
         for key in keys {
-            assert_eq!(read(key, "Other"), MapError::Missing { format: FORMAT, key }.into());
+            assert_eq!(read(key, "Other"), missing(FORMAT, key));
         }
         for (key, from) in [("Xscale", "1e-6"), ("Yscale", "2.5E-06"), ("Zscale", "1e-9")] {
             for scale in ["0", "-1e-6", "nan", "inf"] {
                 let error = read(from, scale);
-                assert!(matches!(error, Error::Map(MapError::Entry { key: found, .. }) if found == key), "{error}");
+                assert!(error.is("map_entry", key), "{error}");
             }
-            let entry =
-                MapError::Entry { format: FORMAT, key, text: "small".into(), allowed: "a number with a decimal point" };
-            assert_eq!(read(from, "small"), entry.into());
+            assert_eq!(read(from, "small"), entry(FORMAT, key, "small", "a number with a decimal point"));
         }
-        let size = |found| MapError::Size { format: FORMAT, what: "heights", found, expected: 6, exact: true };
-        assert_eq!(read("5.5", ""), size(5).into());
-        assert_eq!(read("5.5", "5 5"), size(7).into());
+        let size = |found| wrong_size(FORMAT, "heights", found, 6);
+        assert_eq!(read("5.5", ""), size(5));
+        assert_eq!(read("5.5", "5 5"), size(7));
         for token in ["GOOD", "1,5", "1e999"] {
-            let text = token.to_owned();
-            let entry = MapError::Entry { format: FORMAT, key: "height", text, allowed: "a finite number or BAD" };
-            assert_eq!(read("5.5", token), entry.into());
+            assert_eq!(read("5.5", token), entry(FORMAT, "height", token, "a finite number or BAD"));
         }
-        assert!(matches!(
-            read("Compression = 0", "Compression = 1"),
-            Error::Map(MapError::Entry { key: "Compression", .. })
-        ));
-        assert!(matches!(read("CheckType = 0", "CheckType = 1"), Error::Map(MapError::Entry { key: "CheckType", .. })));
-        assert!(matches!(
-            read("NumPoints = 3", "NumPoints = 3.5"),
-            Error::Map(MapError::Entry { key: "NumPoints", .. })
-        ));
+        assert!(read("Compression = 0", "Compression = 1").is("map_entry", "Compression"));
+        assert!(read("CheckType = 0", "CheckType = 1").is("map_entry", "CheckType"));
+        assert!(read("NumPoints = 3", "NumPoints = 3.5").is("map_entry", "NumPoints"));
         assert!(matches!(read("NumPoints = 3", "NumPoints = 0"), Error::CountOutOfRange { value: 0, .. }));
-        assert!(matches!(read("NumPoints = 3", "NumPoints = 2000000000"), Error::Map(MapError::Size { .. })));
-        assert!(matches!(read("NumPoints = 3", "NumPoints = 4000000000"), Error::Map(MapError::Size { .. })));
+        assert!(read("NumPoints = 3", "NumPoints = 2000000000").code() == "map_size");
+        assert!(read("NumPoints = 3", "NumPoints = 4000000000").code() == "map_size");
         assert!(matches!(read("NumPoints = 3", "NumPoints = 4000000000000000000"), Error::CountOutOfRange { .. }));
-        assert!(matches!(read("aISO", "aBC"), Error::Map(MapError::Magic { .. })));
+        assert!(read("aISO", "aBC").code() == "map_magic");
         let cut = HeightMap::from_sdf(TEXT.split('*').next().unwrap().as_bytes()).unwrap_err();
-        assert_eq!(cut, MapError::Missing { format: FORMAT, key: "line * after the header" }.into());
+        assert_eq!(cut, missing(FORMAT, "line * after the header"));
     }
 
     #[test]
@@ -220,16 +212,16 @@ mod tests {
             assert!(HeightMap::from_sdf(&whole[..length]).is_err(), "{length}");
         }
         assert!(matches!(read(42, &[0, 0]), Error::CountOutOfRange { value: 0, .. }));
-        assert!(matches!(read(42, &[255; 4]), Error::Map(MapError::Size { expected: 8_589_672_450, .. })));
+        assert_eq!(read(42, &[255; 4]), wrong_size(FORMAT, "bytes of heights", 12, 8_589_672_450));
         for (at, key) in [(46, "Xscale"), (54, "Yscale"), (62, "Zscale")] {
             for scale in [0.0_f64, -1.0, f64::NAN, f64::INFINITY] {
                 let error = read(at, &scale.to_le_bytes());
-                assert!(matches!(error, Error::Map(MapError::Entry { key: found, .. }) if found == key), "{error}");
+                assert!(error.is("map_entry", key), "{error}");
             }
         }
         for (at, name) in [(78, "Compression"), (79, "DataType"), (80, "CheckType")] {
             let error = read(at, &[9]);
-            assert!(matches!(error, Error::Map(MapError::Entry { key, .. }) if key == name), "{error}");
+            assert!(error.is("map_entry", name), "{error}");
         }
     }
 }

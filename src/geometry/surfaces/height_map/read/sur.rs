@@ -5,7 +5,8 @@
 use std::io::Read;
 
 use super::{First, Header, Kind, Number, bytes, count, wrong_size};
-use crate::error::{MapError, Result};
+use super::{entry, wrong_magic};
+use crate::error::Result;
 use crate::geometry::{HeightMap, LengthUnit};
 use crate::input::by_lines;
 
@@ -41,20 +42,19 @@ impl HeightMap {
     /// refused.
     ///
     /// # Errors
-    /// [`Error::Map`](crate::Error::Map) if the file cannot be read, is malformed or of another kind; as
+    /// If the file cannot be read, is malformed or of another kind; as
     /// [`HeightMap::new`] if its map is invalid.
     pub fn from_sur(reader: impl Read) -> Result<HeightMap> {
         let file = bytes(reader, FORMAT)?;
         if file.starts_with(b"DSCOMPRESSED") {
-            let (text, allowed) =
-                ("DSCOMPRESSED".into(), "DIGITAL SURF: save it uncompressed, or export it as GSF by Gwyddion");
-            return Err(MapError::Entry { format: FORMAT, key: "signature", text, allowed }.into());
+            let allowed = "DIGITAL SURF: save it uncompressed, or export it as GSF by Gwyddion";
+            return Err(entry(FORMAT, "signature", "DSCOMPRESSED", allowed));
         }
         if !file.starts_with(MAGIC.as_bytes()) {
-            return Err(MapError::Magic { format: FORMAT, magic: MAGIC }.into());
+            return Err(wrong_magic(FORMAT, MAGIC));
         }
         let Some((binary, rest)) = file.split_at_checked(HEADER) else {
-            return Err(wrong_size(FORMAT, "bytes of header", file.len(), HEADER).into());
+            return Err(wrong_size(FORMAT, "bytes of header", file.len(), HEADER));
         };
         // the header that a text file has
         let whole = |(key, at, size): (&'static str, usize, usize)| {
@@ -64,8 +64,8 @@ impl HeightMap {
         let unit = |(key, at)| (key, by_lines(&binary[at..at + 16]).0.replace('\0', " "));
         let entries = WHOLE.map(whole).into_iter().chain(SPACINGS.map(spacing)).chain(UNITS.map(unit));
         let entries: Vec<(&str, String)> = entries.collect();
-        let entry = |key: &str| entries.iter().find(|(name, _)| *name == key).map(|(_, text)| &**text);
-        let header = Header::new(FORMAT, entry);
+        let find = |key: &str| entries.iter().find(|(name, _)| *name == key).map(|(_, text)| &**text);
+        let header = Header::new(FORMAT, find);
         map(&header, rest)
     }
 }
@@ -99,7 +99,6 @@ fn map(header: &Header<'_>, rest: &[u8]) -> Result<HeightMap> {
 mod tests {
     use super::super::tests::sur;
     use super::*;
-    use crate::Error;
 
     #[test]
     fn the_first_line_is_the_top_and_points_beyond_the_range_are_missing() {
@@ -126,14 +125,14 @@ mod tests {
             assert!(HeightMap::from_sur(&whole[..length]).is_err(), "{length}");
         }
         assert!(read(0, b"DSCOMPRESSED").to_string().contains("export it as GSF by Gwyddion"));
-        assert!(matches!(read(0, b"DIGITAL SURD"), Error::Map(MapError::Magic { .. })));
-        assert!(matches!(read(108, &[4]), Error::Map(MapError::Size { expected: 16, found: 12, .. })));
-        assert!(matches!(read(108, &[255; 4]), Error::Map(MapError::Entry { key: "points per line", .. })));
-        assert!(matches!(read(334, &[255; 2]), Error::Map(MapError::Entry { key: "length of comment", .. })));
-        assert!(matches!(read(212, b"a.u.  "), Error::Map(MapError::Unit { .. })));
-        assert!(matches!(read(128, &[0; 4]), Error::Map(MapError::Entry { key: "z spacing", .. })));
+        assert!(read(0, b"DIGITAL SURD").code() == "map_magic");
+        assert_eq!(read(108, &[4]), wrong_size(FORMAT, "bytes of heights", 12, 16));
+        assert!(read(108, &[255; 4]).is("map_entry", "points per line"));
+        assert!(read(334, &[255; 2]).is("map_entry", "length of comment"));
+        assert!(read(212, b"a.u.  ").code() == "map_unit");
+        assert!(read(128, &[0; 4]).is("map_entry", "z spacing"));
         for (at, name) in [(12, "byte order"), (14, "number of objects"), (18, "type of object"), (290, "inversion")] {
-            assert!(matches!(read(at, &[9]), Error::Map(MapError::Entry { key, .. }) if key == name), "{name}");
+            assert!(read(at, &[9]).is("map_entry", name), "{name}");
         }
     }
 }

@@ -4,9 +4,10 @@ use std::collections::HashSet;
 use std::io::Read;
 
 use super::First;
+use super::missing;
 use super::number::is_missing;
 use crate::Grid;
-use crate::error::{Error, MapError, Result, TextError};
+use crate::error::{Error, Refusal, Result};
 use crate::geometry::{HeightMap, LengthUnit};
 use crate::input::{Text, TextFormat, TextRow};
 
@@ -41,16 +42,16 @@ impl HeightMap {
     ///
     /// # Errors
     /// If the text cannot be read, a line differs from the first in its number of columns, or a field is not a
-    /// number, each with the number of the line ([`TextError`]); if the text is a profile or has coordinates
-    /// ([`MapError::NotAMatrix`]), or some heights look like missing ones ([`MapError::StandIn`]); as
+    /// number, each with the number of the line; if the text is a profile or has coordinates,
+    /// or some heights look like missing ones; as
     /// [`HeightMap::new`] if the map is invalid.
     pub fn from_text(reader: impl Read, lengths: [f64; 2], unit: LengthUnit, format: TextFormat) -> Result<HeightMap> {
         let text = Text::read(reader, "text file", format)?;
-        let mut missing = format.missing_height();
+        let mut stand_in = format.missing_height();
         let (mut matrix, mut header) = (text.rows(), Vec::new());
         while let Some(row) = matrix.clone().next().filter(is_header) {
             if row.fields[0].to_lowercase().starts_with("nodata") && row.is_number(1) {
-                missing = missing.or(Some(row.number(1)?).filter(|stated| !stated.is_nan()));
+                stand_in = stand_in.or(Some(row.number(1)?).filter(|stated| !stated.is_nan()));
             }
             header.push(row);
             matrix.next();
@@ -64,7 +65,7 @@ impl HeightMap {
         };
         let is_row = |row: &&TextRow| (row.fields.len() == columns || ends_in_heights(row)) && !is_marked(row);
         if let Some(row) = header.iter().find(|row| columns == 0 || is_row(row)) {
-            return Err(row.not_numeric(0).into());
+            return Err(row.not_numeric(0));
         }
         // a delimiter at the end of every line terminates it; one at the end of some lines precedes a missing height
         let terminated =
@@ -81,10 +82,10 @@ impl HeightMap {
             }
         }
         if heights.is_empty() {
-            return Err(MapError::Missing { format: "text", key: "line of heights" }.into());
+            return Err(missing("text", "line of heights"));
         }
         let (columns, mut heights) = without_index(columns, heights)?;
-        mask(&mut heights, missing)?;
+        mask(&mut heights, stand_in)?;
         let cells = [columns, heights.len() / columns];
         let spacing = Grid::new(cells, lengths)?.spacing();
         HeightMap::from_rows(cells, spacing, &heights, First::Top, |height| unit.to_metres(height))
@@ -106,7 +107,7 @@ fn is_marked(row: &TextRow) -> bool {
 }
 
 /// A height, NaN if it is missing.
-pub(super) fn height(row: &TextRow, column: usize) -> Result<f64, TextError> {
+pub(super) fn height(row: &TextRow, column: usize) -> Result<f64> {
     if MISSING.contains(&row.fields[column].to_lowercase().as_str()) {
         return Ok(f64::NAN);
     }
@@ -150,8 +151,9 @@ fn without_index(columns: usize, heights: Vec<f64>) -> Result<(usize, Vec<f64>)>
     Ok((columns - 1, heights[columns..].chunks(columns).flat_map(|row| row[1..].to_vec()).collect()))
 }
 
-fn not_a_matrix(found: &'static str, remedy: &'static str) -> Error {
-    MapError::NotAMatrix { found, remedy }.into()
+fn not_a_matrix(found: &str, remedy: &str) -> Error {
+    let remedy = format!(": use {remedy}, or HeightMap::new for a matrix that looks so");
+    Refusal::file("map_not_a_matrix", format!("the text has {found}"), &remedy).into()
 }
 
 /// Whether rows of three numbers begin with the coordinates of a grid, each point once.
@@ -179,13 +181,22 @@ pub(super) fn mask(heights: &mut [f64], missing: Option<f64>) -> Result<()> {
         return Ok(());
     }
     let count = heights.iter().filter(|height| **height == value).count();
-    Err(MapError::StandIn { value, count }.into())
+    Err(stand_in(value, count))
+}
+
+/// The error of heights that look like a number for points that were not measured.
+fn stand_in(value: f64, count: usize) -> Error {
+    let what = format!("{count} of the heights are {value}, far from all others");
+    let remedy = format!(
+        ": state TextFormat::with_missing_height({value}) if nothing was measured there, or \
+         with_missing_height(f64::NAN) if it was"
+    );
+    Refusal::file("map_stand_in", what, &remedy).naming("height").valued(value).into()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::FileError;
 
     fn read(text: &str) -> Result<HeightMap> {
         HeightMap::from_text(text.as_bytes(), [3.0, 4.0], LengthUnit::Millimetre, TextFormat::default())
@@ -238,15 +249,19 @@ mod tests {
     #[test]
     fn malformed_lines_are_reported() {
         let columns = read("# a\n1,2,3\n4,5\n").unwrap_err();
-        assert!(matches!(columns, Error::Text(TextError::Columns { line: 3, found: 2, expected: 3, .. })), "{columns}");
+        assert!(
+            columns.to_string().starts_with("line 3: 2 columns separated by commas, but 3 are needed"),
+            "{columns}"
+        );
         for text in ["five", "1e999", "2:3"] {
-            let numeric = TextError::NotNumeric { line: 2, column: 2, text: text.into() };
-            assert_eq!(read(&format!("1 2 3\n4 {text} 6\n")).unwrap_err(), numeric.into());
+            let error = read(&format!("1 2 3\n4 {text} 6\n")).unwrap_err();
+            let numeric = format!("line 2, column 2: {text:?} is not a number; ");
+            assert!(error.to_string().starts_with(&numeric), "{error}");
         }
         for empty in ["", "\n\n", "# nothing\n"] {
-            assert!(matches!(read(empty), Err(Error::Map(MapError::Missing { key: "line of heights", .. }))));
+            assert!(read(empty).is_err_and(|error| error.is("map_missing", "line of heights")));
         }
-        assert!(matches!(read("1 2\0\n"), Err(Error::File(FileError::Unreadable { .. }))));
+        assert!(matches!(read("1 2\0\n"), Err(Error::Unreadable { .. })));
         let flat = HeightMap::from_text("1 2\n".as_bytes(), [0.0, 1.0], LengthUnit::Metre, TextFormat::default());
         assert!(matches!(flat, Err(Error::OutOfRange { field: "length along x1", .. })));
     }
@@ -263,13 +278,11 @@ mod tests {
         }
         for (text, line) in [("one 2 3\n4 5 6\n7 8 9\n", 1), ("x,y,z\n1,2,3\n4,5,6\n", 1), ("a\nb\n", 1)] {
             let error = read(text).unwrap_err();
-            assert!(
-                matches!(error, Error::Text(TextError::NotNumeric { line: l, column: 1, .. }) if l == line),
-                "{error}"
-            );
+            assert_eq!(error.code(), "text_not_numeric");
+            assert!(error.to_string().starts_with(&format!("line {line}, column 1: ")), "{error}");
         }
         for (text, value) in [("1 2 3\n4 -9999 6\n", -9999.0), ("1 2 3\n-1e33 5 6\n", -1e33)] {
-            assert_eq!(read(text).unwrap_err(), MapError::StandIn { value, count: 1 }.into());
+            assert_eq!(read(text).unwrap_err(), stand_in(value, 1));
             let read = |missing: f64| {
                 let format = TextFormat::default().with_missing_height(missing);
                 HeightMap::from_text(text.as_bytes(), [3.0, 4.0], LengthUnit::Nanometre, format).unwrap()
@@ -284,10 +297,8 @@ mod tests {
             (",0.5,1.0,1.5\n2.5,1,2,3\n5.0,4,5,6\n", "without them"),
         ] {
             let error = read(text).unwrap_err();
-            assert!(
-                matches!(error, Error::Map(MapError::NotAMatrix { remedy: c, .. }) if c.contains(remedy)),
-                "{error}"
-            );
+            assert_eq!(error.code(), "map_not_a_matrix");
+            assert!(error.remedy().unwrap().contains(remedy), "{error}");
         }
     }
 }

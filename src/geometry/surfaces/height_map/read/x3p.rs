@@ -9,7 +9,8 @@ use roxmltree::{Document, Node, ParsingOptions};
 use zip::ZipArchive;
 
 use super::{First, Header, Kind, Number, bytes, count, listed, wrong_size};
-use crate::error::{Error, FileError, MapError, Result};
+use super::{missing, wrong_magic};
+use crate::error::{Error, Refusal, Result};
 use crate::geometry::HeightMap;
 
 const FORMAT: &str = "X3P";
@@ -40,12 +41,12 @@ impl HeightMap {
     /// An archive may contain at most 2 GiB of heights and 64 MiB of XML, so that a small one cannot fill the memory.
     ///
     /// # Errors
-    /// [`Error::Map`](crate::Error::Map) if the archive cannot be read, is malformed or contains another feature
+    /// If the archive cannot be read, is malformed or contains another feature
     /// type; as [`HeightMap::new`] if its map is invalid.
     pub fn from_x3p(reader: impl Read) -> Result<HeightMap> {
         let file = bytes(reader, FORMAT)?;
         if !file.starts_with(b"PK") {
-            return Err(MapError::Magic { format: FORMAT, magic: "PK, as zip archives do" }.into());
+            return Err(wrong_magic(FORMAT, "PK, as zip archives do"));
         }
         let mut archive = ZipArchive::new(Cursor::new(file)).map_err(|error| unreadable(&error.to_string()))?;
         let xml = member(&mut archive, "main.xml", "bytes of main.xml at most", MAX_XML)?;
@@ -60,7 +61,7 @@ impl HeightMap {
 type Archive = ZipArchive<Cursor<Vec<u8>>>;
 
 fn unreadable(reason: &str) -> Error {
-    Error::File(FileError::Unreadable { file: format!("{FORMAT} file"), reason: reason.to_owned(), kind: None })
+    Error::Unreadable { file: format!("{FORMAT} file"), reason: reason.to_owned(), kind: None }
 }
 
 /// The contents of a file of the archive, of at most `most` bytes. All of them may be in a folder, and names may be
@@ -79,9 +80,15 @@ fn member(archive: &mut Archive, name: &str, what: &'static str, most: u64) -> R
     // one byte more than allowed is read to detect files that are too large
     let found = bytes.len() as u64;
     if found > most {
-        return Err(MapError::Size { format: FORMAT, what, found, expected: most, exact: false }.into());
+        return Err(oversized(what, found, most));
     }
     Ok(bytes)
+}
+
+/// The error of a file with more than the `most` items that are counted.
+fn oversized(what: &str, found: u64, most: u64) -> Error {
+    let what = format!("the {FORMAT} file should hold {most} {what}, but holds {found} or more");
+    Refusal::file("map_oversized", what, "").into()
 }
 
 /// The descendant of a node at a path of names.
@@ -105,7 +112,7 @@ fn map(root: Node<'_, '_>, archive: &mut Archive) -> Result<HeightMap> {
         "L" => Number::little(Kind::Signed, 4),
         "F" => Number::little(Kind::Float, 4),
         "D" => Number::little(Kind::Float, 8),
-        _ => return Err(header.error(HEIGHT_TYPE, text, "I, L, F or D").into()),
+        _ => return Err(header.error(HEIGHT_TYPE, text, "I, L, F or D")),
     };
     // integers have no scale without it
     let scale = match header.get(INCREMENT) {
@@ -120,14 +127,14 @@ fn map(root: Node<'_, '_>, archive: &mut Archive) -> Result<HeightMap> {
         Some(name) => {
             let expected = count.saturating_mul(number.size);
             if expected > MAX_DATA {
-                return Err(wrong_size(FORMAT, "bytes of heights at most", expected, MAX_DATA).into());
+                return Err(wrong_size(FORMAT, "bytes of heights at most", expected, MAX_DATA));
             }
             let data = member(archive, name, "bytes of heights", expected as u64)?;
             number.decode_all(FORMAT, &data, count, true)?
         }
         None => {
-            let missing = MapError::Missing { format: FORMAT, key: "PointDataLink or DataList" };
-            let list = descendant(root, "Record3/DataList").ok_or(missing)?;
+            let list = descendant(root, "Record3/DataList");
+            let list = list.ok_or_else(|| missing(FORMAT, "PointDataLink or DataList"))?;
             // the last number of each datum, after x and y if they are present
             let data = list.children().filter(|child| child.tag_name().name() == "Datum");
             let heights =
@@ -140,7 +147,7 @@ fn map(root: Node<'_, '_>, archive: &mut Archive) -> Result<HeightMap> {
         let (expected, what) = (count.div_ceil(8), "bytes of valid points");
         let valid = member(archive, name, what, expected as u64)?;
         if valid.len() < expected {
-            return Err(wrong_size(FORMAT, what, valid.len(), expected).into());
+            return Err(wrong_size(FORMAT, what, valid.len(), expected));
         }
         // one bit per point, the lowest of a byte first
         let missing = |k: &usize| valid[k / 8] >> (k % 8) & 1 == 0;
@@ -157,7 +164,7 @@ fn require_unrotated(root: Node<'_, '_>, header: &Header<'_>) -> Result<()> {
         let text = entry.text().unwrap_or_default().trim();
         let identity = if ["r11", "r22", "r33"].contains(&entry.tag_name().name()) { 1.0 } else { 0.0 };
         if !text.parse().is_ok_and(|value: f64| (value - identity).abs() < 1e-9) {
-            return Err(header.error(ROTATION, text, "none (1 on the diagonal, 0 off it)").into());
+            return Err(header.error(ROTATION, text, "none (1 on the diagonal, 0 off it)"));
         }
     }
     Ok(())
@@ -252,7 +259,7 @@ mod tests {
             ("<Axes>", "<Axes><Rotation><r11>0.9</r11></Rotation>", "Record1/Axes/Rotation"),
         ] {
             let error = with(from, to);
-            assert!(matches!(error, Error::Map(MapError::Entry { key: found, .. }) if found == key), "{error}");
+            assert!(error.is("map_entry", key), "{error}");
         }
         for (from, to, key) in [
             ("FeatureType>SUR</FeatureType", "Other>SUR</Other", "Record1/FeatureType"),
@@ -266,32 +273,29 @@ mod tests {
                 if to.contains("List") { "</ListDimension>" } else { "</MatrixDimension>" },
             );
             let error = read(&from_to, &[0; 48]).unwrap_err();
-            assert!(matches!(error, Error::Map(MapError::Missing { key: found, .. }) if found == key), "{error}");
+            assert!(error.is("map_missing", key), "{error}");
         }
         for increment in ["0", "-1", "NaN", "INF"] {
-            assert!(matches!(
-                with("1e-6", increment),
-                Error::Map(MapError::Entry { key: "Record1/Axes/CX/Increment", .. })
-            ));
+            assert!(with("1e-6", increment).is("map_entry", "Record1/Axes/CX/Increment"));
         }
         assert!(matches!(with(" 3 ", "0"), Error::CountOutOfRange { value: 0, .. }));
         for size in ["400000000", "4000000000", "18446744073709551615"] {
             let error = with(" 3 ", size);
-            assert!(matches!(error, Error::Map(MapError::Size { .. }) | Error::CountOutOfRange { .. }), "{error}");
+            assert!(["map_size", "count_out_of_range"].contains(&error.code()), "{error}");
         }
         for (length, found) in [(40, 40), (47, 47), (49, 49), (4000, 49)] {
             let error = read(&whole, &vec![0; length]).unwrap_err();
-            let exact = found < 48;
-            let size = MapError::Size { format: FORMAT, what: "bytes of heights", found, expected: 48, exact };
-            assert_eq!(error, size.into());
+            let what = "bytes of heights";
+            let size = if found < 48 { wrong_size(FORMAT, what, found, 48) } else { oversized(what, found as u64, 48) };
+            assert_eq!(error, size);
         }
         for broken in ["", "<a", "<a></a></a>", "<!DOCTYPE a [<!ENTITY b \"c\">]><a>&b;</a>"] {
-            assert!(matches!(read(broken, &[]), Err(Error::File(FileError::Unreadable { .. }))), "{broken}");
+            assert!(matches!(read(broken, &[]), Err(Error::Unreadable { .. })), "{broken}");
         }
-        assert!(matches!(with("bindata/data.bin", "nowhere"), Error::File(FileError::Unreadable { .. })));
+        assert!(matches!(with("bindata/data.bin", "nowhere"), Error::Unreadable { .. }));
         let none = HeightMap::from_x3p(&archive(&[("other.xml", b"")])[..]);
-        assert!(matches!(none, Err(Error::File(FileError::Unreadable { .. }))));
-        assert!(matches!(HeightMap::from_x3p(&b"<xml/>"[..]), Err(Error::Map(MapError::Magic { .. }))));
+        assert!(matches!(none, Err(Error::Unreadable { .. })));
+        assert!(HeightMap::from_x3p(&b"<xml/>"[..]).is_err_and(|error| error.code() == "map_magic"));
     }
 
     #[test]
@@ -303,15 +307,15 @@ mod tests {
         };
         assert!(files(&[0xff]).is_ok());
         for valid in [&b""[..], b"\xff\xff"] {
-            assert!(matches!(files(valid), Err(Error::Map(MapError::Size { what: "bytes of valid points", .. }))));
+            assert!(files(valid).is_err_and(|error| error.to_string().contains("should hold 1 bytes of valid points")));
         }
     }
 
     #[test]
     fn deep_and_oversized_xml_is_refused() {
         let deep = "<a>".repeat(300_000);
-        assert!(matches!(read(&deep, &[]), Err(Error::File(FileError::Unreadable { .. }))));
+        assert!(matches!(read(&deep, &[]), Err(Error::Unreadable { .. })));
         let oversized = " ".repeat(MAX_XML as usize + 2);
-        assert!(matches!(read(&oversized, &[]), Err(Error::Map(MapError::Size { exact: false, .. }))));
+        assert!(read(&oversized, &[]).is_err_and(|error| error.code() == "map_oversized"));
     }
 }

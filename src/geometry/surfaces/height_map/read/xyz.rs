@@ -4,10 +4,11 @@ use std::io::Read;
 
 use super::text::{NO_HEIGHT, height, mask};
 use super::{First, count};
-use crate::error::{MapError, Result, least_length, positive, within};
+use crate::error::{Error, Refusal, Result, least_length, positive, within};
 use crate::geometry::{HeightMap, LengthUnit};
 use crate::input::{Quantity, TableRow, TakenColumn, TextFormat, TextTable, UnitOf, WantedColumn, name, same};
 use crate::memory;
+use crate::rounded::rounded;
 
 /// Maximum distance of a point from the regular grid, in spacings.
 const MAX_OFFSET: f64 = 1e-3;
@@ -38,7 +39,7 @@ impl HeightMap {
     /// ```
     ///
     /// # Errors
-    /// If the text cannot be read or a line does not have three numbers ([`TextError`](crate::TextError)); if a point
+    /// If the text cannot be read or a line does not have three numbers; if a point
     /// lies off the grid or is given twice, or less than 1 % of the points of the grid are given
     /// ([`Error::Map`](crate::Error::Map)); if there are fewer than two different coordinates along x or y; as
     /// [`HeightMap::new`] if the map is invalid.
@@ -108,18 +109,26 @@ fn on_grid(points: &[Point], axes: [RegularAxis; 2], most_cells: usize) -> Resul
     let (cells, spacing) = (axes.each_ref().map(|axis| axis.cells), axes.each_ref().map(|axis| axis.spacing));
     let count = count(cells, spacing)?;
     if count.div_ceil(most_cells) > points.len() {
-        return Err(MapError::Sparse { points: points.len(), cells }.into());
+        return Err(sparse(points.len(), cells));
     }
     let what = "the grid that the points of a file lie on";
     let (mut rows, mut lines) = (memory::field(what, count, f64::NAN)?, memory::field(what, count, 0_u64)?);
     for (k, point) in points.iter().enumerate() {
         let at = axes[1].indices[k] * cells[0] + axes[0].indices[k];
         if lines[at] != 0 {
-            return Err(MapError::Duplicate { line: point.line, earlier: lines[at], at: point.at }.into());
+            let [x, y] = point.at.map(|x| rounded(x, 5));
+            let what = format!("lines {} and {} give two heights for the point ({x}, {y}) m", lines[at], point.line);
+            return Err(Refusal::file("map_duplicate", what, ": give their mean").into());
         }
         (rows[at], lines[at]) = (point.height, point.line);
     }
     HeightMap::from_rows(cells, spacing, &rows, First::Bottom, |height| height)
+}
+
+/// The error of points that are no regular grid.
+fn sparse(points: usize, [n1, n2]: [usize; 2]) -> Error {
+    let what = format!("{points} points are too few for the regular grid of {n1} x {n2} that their distances suggest");
+    Refusal::file("map_sparse", what, ": interpolate scattered points on a regular grid").into()
 }
 
 /// The point of a line.
@@ -154,15 +163,18 @@ fn points(
             }
             None => match table.without_comment() {
                 Some(plain) => return points(&plain, wanted, units, format),
-                None => return Err(table.missing(&wanted[0], "").into()),
+                None => return Err(table.missing(&wanted[0], "")),
             },
         };
     for (k, column) in taken.iter().enumerate() {
         let given = units[usize::from(k == last)];
         let differs = |size: f64| !same(size, given.factor());
         if column.unit().is_ok_and(differs) || matches!(column.unit_of, UnitOf::Other(_) | UnitOf::Unclear(_)) {
-            let (heading, given) = (column.heading().to_owned(), name(Quantity::LENGTH, given.factor()));
-            return Err(MapError::OtherUnit { column: column.index() + 1, heading, given }.into());
+            let (heading, given) = (column.heading(), name(Quantity::LENGTH, given.factor()));
+            let index = column.index() + 1;
+            let what =
+                format!("column {index}: the heading {heading:?} names another unit than {given}, which was given");
+            return Err(Refusal::file("map_other_unit", what, ": give that of the heading").into());
         }
     }
     let coordinates = taken[..last].to_vec();
@@ -204,9 +216,7 @@ fn axis(points: &[Point], name: &'static str, axis: usize) -> Result<RegularAxis
     steps.sort_by(|a, b| b.total_cmp(a));
     let Some(&greatest) = steps.first() else {
         // no points, or all at the same coordinate
-        return Err(least_length(field, order.len().min(1), 2)
-            .err()
-            .unwrap_or(MapError::Sparse { points: points.len(), cells: [1, 1] }.into()));
+        return Err(least_length(field, order.len().min(1), 2).err().unwrap_or(sparse(points.len(), [1, 1])));
     };
     // in decreasing order, the last step before the first that is a small fraction of its predecessor
     let smallest = steps.iter().try_fold(greatest, |a, &b| if b < SAME_POSITION * a { Err(a) } else { Ok(b) });
@@ -226,8 +236,15 @@ fn axis(points: &[Point], name: &'static str, axis: usize) -> Result<RegularAxis
     if let Some(k) =
         (0..order.len()).max_by(|&a, &b| off(a).total_cmp(&off(b))).filter(|&k| off(k) > MAX_OFFSET || off(k).is_nan())
     {
-        let (line, value, off, allowed) = (points[order[k]].line, value(k), off(k), MAX_OFFSET);
-        return Err(MapError::OffGrid { line, axis: name, value, spacing, off, allowed }.into());
+        let (line, value, off) = (points[order[k]].line, value(k), off(k));
+        let what = format!(
+            "line {line}: {name} = {} m is {off:.3} spacings of {} m off the regular grid of the points; \
+             {MAX_OFFSET:.3} are allowed",
+            rounded(value, 5),
+            rounded(spacing, 4)
+        );
+        let remedy = ": interpolate the points on a regular grid";
+        return Err(Refusal::file("map_off_grid", what, remedy).naming(name).valued(value).into());
     }
     let mut indices = vec![0; order.len()];
     for (k, &position) in positions.iter().enumerate() {
@@ -257,7 +274,6 @@ mod tests {
     use approx::assert_abs_diff_eq;
 
     use super::*;
-    use crate::{Error, TextError};
 
     fn read(text: &str) -> Result<HeightMap> {
         HeightMap::from_xyz(text.as_bytes(), LengthUnit::Micrometre, LengthUnit::Nanometre, TextFormat::default())
@@ -288,7 +304,7 @@ mod tests {
         let named = read("y [um];x [um];z [nm]\n0;0;1\n0;1;2\n1;0;3\n1;1;4\n").unwrap();
         assert_eq!(named, map);
         let other = read("x [mm];y [um];z [nm]\n0;0;1\n0;1;2\n1;0;3\n1;1;4\n").unwrap_err();
-        assert!(matches!(other, Error::Map(MapError::OtherUnit { column: 1, .. })), "{other}");
+        assert!(other.code() == "map_other_unit" && other.to_string().starts_with("column 1: "), "{other}");
         let profile = |text: &str| {
             let units = [LengthUnit::Micrometre, LengthUnit::Nanometre];
             HeightMap::from_profile(text.as_bytes(), units[0], units[1], TextFormat::default())
@@ -296,9 +312,9 @@ mod tests {
         let line = profile("0 1\n0.5 bad\n1 3\n1.5 4\n").unwrap();
         assert_eq!((line.cells, line.missing), ([4, 1], 1));
         let uneven = profile("0.01 1\n0.1 2\n1 3\n10 4\n").unwrap_err();
-        assert!(matches!(uneven, Error::Map(MapError::Sparse { points: 4, .. })), "{uneven}");
+        assert!(uneven.code() == "map_sparse" && uneven.to_string().starts_with("4 points"), "{uneven}");
         let twice = profile("0 1\n0.5 2\n1 3\n0.5 4\n").unwrap_err();
-        assert!(matches!(twice, Error::Map(MapError::Duplicate { line: 4, earlier: 2, .. })), "{twice}");
+        assert!(twice.to_string().starts_with("lines 2 and 4 give two heights"), "{twice}");
     }
 
     #[test]
@@ -336,18 +352,17 @@ mod tests {
         let square = "0 0 1\n1 0 2\n2 0 3\n0 1 4\n1 1 5\n";
         assert!(read(square).is_ok());
         let duplicate = read(&format!("{square}1.0002 0 7\n")).unwrap_err();
-        assert!(matches!(duplicate, Error::Map(MapError::Duplicate { line: 6, earlier: 2, .. })), "{duplicate}");
+        assert!(duplicate.to_string().starts_with("lines 2 and 6 give two heights"), "{duplicate}");
         for (stray, name) in [("2.01 1 6", "x"), ("2.3 1 6", "x"), ("2 1.4 6", "y")] {
             let error = read(&format!("{square}{stray}\n")).unwrap_err();
-            assert!(matches!(error, Error::Map(MapError::OffGrid { axis, .. }) if axis == name), "{error}");
+            assert!(error.is("map_off_grid", name), "{error}");
         }
         for text in ["", "0 0 1\n", "0 0 1\n1 0 2\n", "0 0 1\n0 1 2\n"] {
             assert!(matches!(read(text), Err(Error::WrongLength { expected: 2, .. })), "{text}");
         }
         // scattered points: a diagonal in a grid of a million
         let diagonal: String = (0..1000).map(|k| format!("{k} {k} 1\n")).collect();
-        let sparse = MapError::Sparse { points: 1000, cells: [1000, 1000] };
-        assert_eq!(read(&diagonal).unwrap_err(), sparse.into());
+        assert_eq!(read(&diagonal).unwrap_err(), sparse(1000, [1000, 1000]));
         let wide = "-1e308 0 1\n1e308 0 1\n0 1 1\n1e308 1 1\n";
         assert!(
             HeightMap::from_xyz(wide.as_bytes(), LengthUnit::Metre, LengthUnit::Metre, TextFormat::default()).is_err()
@@ -358,15 +373,19 @@ mod tests {
     #[test]
     fn malformed_lines_are_reported() {
         let columns = read("0 0 1\n1 0\n").unwrap_err();
-        assert!(matches!(columns, Error::Text(TextError::Columns { line: 2, found: 2, expected: 3, .. })), "{columns}");
+        assert!(
+            columns.to_string().starts_with("line 2: 2 columns separated by blanks, but 3 are needed"),
+            "{columns}"
+        );
         for (line, column, text) in [
             ("one 0 1", 1, "one"),
             ("-3.4028235e38 0 1", 1, "-3.4028235e38"),
             ("1 nan 1", 2, "nan"),
             ("1 0 1e999", 3, "1e999"),
         ] {
-            let wanted = TextError::NotNumeric { line: 2, column, text: text.into() };
-            assert_eq!(read(&format!("0 0 1\n{line}\n")).unwrap_err(), wanted.into());
+            let error = read(&format!("0 0 1\n{line}\n")).unwrap_err();
+            let wanted = format!("line 2, column {column}: {text:?} is not a number; ");
+            assert!(error.to_string().starts_with(&wanted), "{error}");
         }
     }
 }
