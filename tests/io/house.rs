@@ -10,7 +10,7 @@ const ORDER: &str = "\
     grid memory parallel fft geometry motion kernel load rheology adhesion hereditary solver analytic equilibrium \
     fields elastic observe contact sliding run friction states study laws output plot";
 
-fn files(folder: &Path, found: &mut Vec<PathBuf>) {
+pub fn files(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         if path.is_dir() {
@@ -22,7 +22,7 @@ fn files(folder: &Path, found: &mut Vec<PathBuf>) {
 }
 
 /// The code of a file without comments and items of tests.
-fn code(path: &Path) -> String {
+pub fn code(path: &Path) -> String {
     let text = fs::read_to_string(path).unwrap();
     let mut code = String::new();
     let mut lines = text.lines();

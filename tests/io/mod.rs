@@ -3,6 +3,7 @@
 mod absurd_sizes;
 mod checkpoint;
 mod clauses;
+mod codes;
 mod diagnosis;
 mod documents;
 mod errors;
