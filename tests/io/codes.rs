@@ -114,9 +114,16 @@ type Provoked = (&'static str, fn() -> Result<()>);
 #[rustfmt::skip]
 const PROVOKED: &[Provoked] = &[
     ("beyond_full_contact", || on_kernel(InfluenceKernel::periodic(&grid()), Load::approach(1.0e-5))),
+    ("beyond_material", || {
+        let table = [0.1_f64, 1.0, 10.0, 100.0, 1000.0].map(|t| (t, 1.0e-6 * (1.0 + 0.1 * t.ln_1p())));
+        let mut contact = builder_on(grid(), Material::incompressible(Measurements::creep(&table)?.fit()?)).build()?;
+        contact.step(0.0, Load::force(0.1))?;
+        contact.step(1.0e4, Load::force(0.1)).map(drop)
+    }),
     ("cancelled", || contact().step_unless(&true.into(), 0.0, Load::force(0.1)).map(drop)),
     ("checkpoint_unreadable", || contact().resume("no/such/file")),
     ("contact_at_edge", || pressed(Load::force(20.0))),
+    ("count_out_of_range", || Grid::square(0, 1.0).map(drop)),
     ("friction_other_load", || {
         let spring = StepLoad::new(Load::spring(1.0, 0.1))?;
         let contact = FrictionContact::new(builder_on(grid(), elastic()), Coulomb::new(0.5)?)?;
@@ -146,7 +153,7 @@ const PROVOKED: &[Provoked] = &[
     }),
     ("not_converged", || {
         let settings = Settings::default().with_max_iterations(2).with_tolerance(1e-12);
-        sphere_on(grid(), maxwell(), settings).step(0.0, Load::force(0.1)).map(drop)
+        sphere_on(Grid::square(32, 4.0e-3)?, maxwell(), settings).step(0.0, Load::force(0.1)).map(drop)
     }),
     ("not_covered", || contact().step_over([1, 0], 0.1, Load::force(0.1)).map(drop)),
     ("nothing_to_touch", || {
@@ -155,13 +162,15 @@ const PROVOKED: &[Provoked] = &[
     ("out_of_memory", || builder_on(Grid::square(1_000_000, 4.0e-3)?, elastic()).build().map(drop)),
     ("out_of_order", || PiecewiseLinear::new(&[(0.0, Load::force(1.0)), (-1.0, Load::force(1.0))]).map(drop)),
     ("out_of_range", || Sphere::new(-1.0).map(drop)),
+    ("output", || contact().save("no/such/folder/file")),
+    ("overflow", || pressed(Load::force(1.0e308))),
     ("pulled_off", || sticky(1.0)?.step(1.0, Load::force(-20.0)).map(drop)),
     ("rank_failed", || ranks(|_, contact| contact.save("no/such/folder/file"))),
     ("rank_left", || ranks(|rank, contact| if rank == 0 { Ok(()) } else { contact.step(0.1, Load::force(0.1)).map(drop) })),
     ("ranks_apart", || ranks(|rank, contact| contact.step(0.1, Load::force(0.1 + 0.1 * rank as f64)).map(drop))),
     ("shrinks", shrinking),
     ("slides", || {
-        let mut contact = states()?.with_friction(0.5)?;
+        let mut contact = states()?.with_estimated_friction(0.5)?;
         contact.step_sheared(0.1, Load::force(0.1), Load::force(0.2)).map(drop)
     }),
     ("states_other_tilt", || states()?.step(0.1, Load::eccentric_force(0.1, [1.0e-4, 0.0])).map(drop)),
