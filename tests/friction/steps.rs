@@ -103,6 +103,29 @@ fn losses_at_once_do_not_depend_on_steps() {
     assert!(many > 0.0 && (one / many - 1.0).abs() < 1e-9, "{one:e}, {many:e}");
 }
 
+/// A body that is held along the surface while it is lifted at once does no work there, so that all that was stored goes
+/// into slip; one that is let go as it is lifted gets it back.
+#[test]
+fn what_parts_loses_what_it_had_stored_unless_it_is_let_go() {
+    for (is_held, parts) in [(true, 1), (true, 2), (true, 40), (false, 1), (false, 40)] {
+        let mut contact = ball(&zener(), 0.4);
+        contact.step_sheared(0.0, Load::force(1.0), Load::force(0.2)).unwrap();
+        let (before, at) = (contact.lateral_work(), contact.lateral_displacement());
+        assert_eq!(before.slip, 0.0);
+        for k in 1..=parts {
+            let left = 1.0 - f64::from(k) / f64::from(parts);
+            let along = if is_held { Load::approach(at) } else { Load::force(0.2 * left) };
+            contact.step_sheared(0.0, Load::force(left), along).unwrap();
+        }
+        let after = contact.lateral_work();
+        assert!(after.stored.abs() < 1e-12 * before.stored, "{after:?}");
+        let lost = after.slip / before.stored;
+        println!("held {is_held} in {parts}: {lost:.6}");
+        let most = if parts == 1 { 1e-12 } else { 0.06 / f64::from(parts) };
+        assert!((lost - f64::from(u8::from(is_held))).abs() < most, "{is_held} {parts}: {lost}");
+    }
+}
+
 /// Displacements and springs that were read off a run under forces bring the forces back.
 #[test]
 fn motions_and_springs_bring_forces_back() {

@@ -68,7 +68,7 @@ impl Levels {
             (force, motion) = (force + traction * width, motion + shear.trial[k] * depth);
             groups[k].shear = traction;
         }
-        let taken = taken(history, groups, shear);
+        let (taken, displaced) = (taken(history, groups, shear), shear.displacement());
         if let Demand::Force(wanted) = along {
             force = wanted;
         } else {
@@ -80,6 +80,11 @@ impl Levels {
         lost += if let Demand::Force(_) = along { 0.0 } else { sliding * left };
         let bottom = stick.checked_sub(1).map_or(0.0, |k| groups[k].top);
         lost += begun * travelled(level - bottom, edge - from, from - bottom);
+        // where all of it parts, the force falls to nothing with the pressure: what bodies give back beyond its work is
+        // dissipated by slip, unless they are let go
+        if met.end == 0 && before != 0.0 && !matches!(along, Demand::Force(_)) {
+            lost = f64::max(0.0, 0.5 * before * (shear.displacement() - displaced) - taken);
+        }
         (shear.lost, shear.work) = (shear.lost + lost, shear.work + taken + lost);
         let now = [shear.displacement(), force, shear.work];
         shear.maxima.iter_mut().zip(now).for_each(|(most, now)| *most = most.max(now.abs()));
