@@ -107,7 +107,7 @@ fn losses_at_once_do_not_depend_on_steps() {
 /// into slip; one that is let go as it is lifted gets it back.
 #[test]
 fn what_parts_loses_what_it_had_stored_unless_it_is_let_go() {
-    for (is_held, parts) in [(true, 1), (true, 2), (true, 40), (false, 1), (false, 40)] {
+    for (is_held, parts) in [(true, 1), (true, 40), (true, 640), (false, 1), (false, 40)] {
         let mut contact = ball(&zener(), 0.4);
         contact.step_sheared(0.0, Load::force(1.0), Load::force(0.2)).unwrap();
         let (before, at) = (contact.lateral_work(), contact.lateral_displacement());
@@ -121,7 +121,7 @@ fn what_parts_loses_what_it_had_stored_unless_it_is_let_go() {
         assert!(after.stored.abs() < 1e-12 * before.stored, "{after:?}");
         let lost = after.slip / before.stored;
         println!("held {is_held} in {parts}: {lost:.6}");
-        let most = if parts == 1 { 1e-12 } else { 0.06 / f64::from(parts) };
+        let most = if parts == 1 { 1e-12 } else { 0.3 / f64::from(parts) };
         assert!((lost - f64::from(u8::from(is_held))).abs() < most, "{is_held} {parts}: {lost}");
     }
 }
