@@ -91,8 +91,8 @@ impl ElasticBuilder {
     /// # Errors
     /// If geometry or modulus is missing, the modulus is not positive, a gap is NaN or −∞ or none is finite, a
     /// setting is out of range, the kernel was made for another grid or cannot be made for its cells
-    /// ([`InfluenceKernel::half_space`]), there is not enough memory ([`Error::OutOfMemory`]), or more than 2³² − 1
-    /// cells would be computed.
+    /// ([`InfluenceKernel::half_space`]), there is not enough memory ([`OutOfMemory`](crate::Error::OutOfMemory)), or
+    /// more than 2³² − 1 cells would be computed.
     pub fn build(self) -> Result<ElasticContact> {
         let (ground, compliance) = self.ground()?;
         let gaps = self.gaps.into_iter().collect::<Result<Vec<_>>>()?;

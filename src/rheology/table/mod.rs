@@ -75,8 +75,8 @@ impl Measurements {
     /// become its rows by `std::iter::zip(times, compliances).collect::<Vec<_>>()`.
     ///
     /// # Errors
-    /// If there are fewer than four rows, a value is not finite and positive, or a time is negative or given twice:
-    /// [`Error::Table`](crate::Error::Table). Rows at the time of the row before them, as where times are printed with
+    /// If there are fewer than four rows, a value is not finite and positive, or a time is negative or given twice.
+    /// Rows at the time of the row before them, as where times are printed with
     /// few digits, are averaged with it if they agree within 10 % ([`FitReport::averaged`]).
     pub fn creep(table: &[(f64, f64)]) -> Result<Measurements> {
         Measurements::from_pairs(Experiment::Creep, table)

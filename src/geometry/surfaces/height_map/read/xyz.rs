@@ -40,8 +40,8 @@ impl HeightMap {
     ///
     /// # Errors
     /// If the text cannot be read or a line does not have three numbers; if a point
-    /// lies off the grid or is given twice, or less than 1 % of the points of the grid are given
-    /// ([`Error::Map`](crate::Error::Map)); if there are fewer than two different coordinates along x or y; as
+    /// lies off the grid or is given twice, or less than 1 % of the points of the grid are given; if there are fewer
+    /// than two different coordinates along x or y; as
     /// [`HeightMap::new`] if the map is invalid.
     pub fn from_xyz(
         reader: impl Read,
