@@ -59,8 +59,9 @@ pub(crate) fn in_order(
 
 /// The error of a builder without a part that every contact needs.
 pub(crate) fn missing(part: &'static str) -> Error {
-    let remedy = format!(": call Builder::{part} before build");
-    Refusal::value("missing", format!("a contact needs {part}"), &remedy).naming(part).into()
+    let message = format!("a contact needs {part}: call Builder::{part} before build");
+    let (what, remedy) = message.split_at(message.find(':').unwrap_or(message.len()));
+    Refusal::value("missing", what, remedy).naming(part).into()
 }
 
 /// The error of what was taken of another contact.
