@@ -2,7 +2,7 @@
 
 use std::io;
 
-use super::{Error, RanksError, StepError};
+use super::{Error, RanksError, Refusal, StepError};
 
 /// What sort of failure an [`Error`] is, for programs that map errors to others. The error itself tells field, value
 /// and remedy.
@@ -64,8 +64,7 @@ impl Error {
             | Error::OutOfOrder { field, .. }
             | Error::LoadOutOfRange { field, .. } => Some(field),
             Error::NotCovered { what, .. } | Error::OutOfMemory { what, .. } => Some(what),
-            Error::Refused(refusal) | Error::Checkpoint { cause: refusal, .. } => refusal.0.name,
-            _ => None,
+            _ => self.refusal()?.0.name,
         }
     }
 
@@ -78,8 +77,7 @@ impl Error {
             | Error::InvalidGap { value, .. } => Some(value),
             Error::CountOutOfRange { value, .. } => Some(value as f64),
             Error::WrongLength { len, .. } => Some(len as f64),
-            Error::Refused(ref refusal) => refusal.0.value,
-            _ => None,
+            _ => self.refusal()?.0.value,
         }
     }
 
@@ -89,8 +87,7 @@ impl Error {
             Error::OutOfRange { allowed, .. }
             | Error::CountOutOfRange { allowed, .. }
             | Error::LoadOutOfRange { allowed, .. } => Some(allowed),
-            Error::Refused(refusal) => refusal.0.allowed,
-            _ => None,
+            _ => self.refusal()?.0.allowed,
         }
     }
 
@@ -98,9 +95,6 @@ impl Error {
     pub fn remedy(&self) -> Option<String> {
         let before = match self {
             Error::NotCovered { remedy, .. } => return Some((*remedy).to_owned()),
-            Error::Refused(refusal) | Error::Checkpoint { cause: refusal, .. } => {
-                return refusal.remedy().map(str::to_owned);
-            }
             Error::InvalidGap { .. }
             | Error::NothingToTouch { .. }
             | Error::PulledOff { .. }
@@ -113,7 +107,7 @@ impl Error {
             | Error::ZoneNotResolved { .. }
             | Error::Step(_)
             | Error::Ranks(RanksError::Left { .. } | RanksError::Apart) => ": ",
-            _ => return None,
+            _ => return self.refusal()?.remedy().map(str::to_owned),
         };
         self.to_string().rsplit_once(before).map(|(_, remedy)| remedy.to_owned())
     }
@@ -132,7 +126,13 @@ impl Error {
         match self {
             Error::Output(error) => Some(error.kind()),
             Error::Unreadable { kind, .. } => *kind,
-            Error::Refused(refusal) | Error::Checkpoint { cause: refusal, .. } => refusal.0.io_kind,
+            _ => self.refusal()?.0.io_kind,
+        }
+    }
+
+    fn refusal(&self) -> Option<&Refusal> {
+        match self {
+            Error::Refused(refusal) | Error::Checkpoint { cause: refusal, .. } => Some(refusal),
             _ => None,
         }
     }

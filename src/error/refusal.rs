@@ -69,6 +69,13 @@ impl Refusal {
         self
     }
 
+    /// The same with the values allowed, as the end of its message.
+    pub(crate) fn must_be(mut self, allowed: &'static str) -> Refusal {
+        self.0.message += &format!(": it must be {allowed}");
+        self.0.remedy = self.0.message.len();
+        self.allowing(allowed)
+    }
+
     /// The same of an error of the system.
     pub(crate) fn of_system(mut self, kind: io::ErrorKind) -> Refusal {
         self.0.io_kind = Some(kind);

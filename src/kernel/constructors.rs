@@ -25,8 +25,7 @@ const FARTHEST_DATUM: f64 = 1e120;
 /// The error of an influence coefficient, or of the compliance of a wave, that no body can have.
 fn invalid(of: &'static str, at: [isize; 2], value: f64, allowed: &'static str) -> Error {
     let what = format!("the influence {of} [{}, {}] is {value:?}", at[0], at[1]);
-    let refusal = Refusal::value("kernel_invalid_influence", what, &format!(": it must be {allowed}"));
-    refusal.naming(of).valued(value).allowing(allowed).into()
+    Refusal::value("kernel_invalid_influence", what, "").naming(of).valued(value).must_be(allowed).into()
 }
 
 impl InfluenceKernel {

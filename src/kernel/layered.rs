@@ -159,10 +159,7 @@ fn layer_strip(grid: &Grid, layer: Layer, axis: usize, datum: Option<f64>) -> Re
 
 fn layer_datum(datum: String, allowed: &'static str) -> Error {
     let what = format!("the datum of a load along a line on a layer is {datum}");
-    Refusal::value("kernel_layer_datum", what, &format!(": it must be {allowed}"))
-        .naming("datum")
-        .allowing(allowed)
-        .into()
+    Refusal::value("kernel_layer_datum", what, "").naming("datum").must_be(allowed).into()
 }
 
 /// Rejects cells that are too long for the layer.

@@ -211,11 +211,11 @@ impl InfluenceKernel {
     pub fn coefficient(&self, i: isize, j: isize) -> Result<f64> {
         let ([n1, n2], at) = (self.grid.cells(), [i, j].map(isize::unsigned_abs));
         if at[0] >= n1 || at[1] >= n2 {
-            let what = format!("offset ({i}, {j}) in cells is not allowed");
-            let range = format!(
-                ": it must be in (-{n1}, {n1}) along x1 and (-{n2}, {n2}) along x2, the grid having {n1} × {n2} cells"
+            let what = format!(
+                "offset ({i}, {j}) in cells is not allowed: it must be in (-{n1}, {n1}) along x1 and (-{n2}, {n2}) \
+                 along x2, the grid having {n1} × {n2} cells"
             );
-            return Err(Refusal::value("kernel_offset_outside_grid", what, &range).naming("offset").into());
+            return Err(Refusal::value("kernel_offset_outside_grid", what, "").naming("offset").into());
         }
         Ok(self.coefficient_at(at))
     }

@@ -15,8 +15,7 @@
 //! # Ok::<(), viscocontact::Error>(())
 //! ```
 
-use crate::error::poisson_ratio;
-use crate::error::{Refusal, Result};
+use crate::error::{Refusal, Result, poisson_ratio};
 use crate::rheology::{GeneralizedMaxwell, Material, TimeTemperature};
 
 /// The modulus of a published series.

@@ -169,10 +169,12 @@ fn checked<R: Rheology + ?Sized>(rheology: &R, time: f64, previous: f64) -> Resu
 /// The error of a J(t) that no body can have.
 pub(super) fn invalid_compliance(time: f64, value: f64, previous: f64) -> Error {
     let [at, shown, previous] = [time, value, previous].map(|number| rounded(number, 5));
-    let what = format!("creep compliance J({at} s) = {shown} 1/Pa is not allowed");
-    let range = format!(": it must be finite, ≥ 0 (> 0 after t = 0) and non-decreasing (J was {previous} before)");
-    let refusal = Refusal::value("material_invalid_compliance", what, &range).naming("creep compliance").valued(value);
-    refusal.allowing("finite, ≥ 0 (> 0 after t = 0) and non-decreasing").into()
+    let allowed = "finite, ≥ 0 (> 0 after t = 0) and non-decreasing";
+    let what = format!(
+        "creep compliance J({at} s) = {shown} 1/Pa is not allowed: it must be {allowed} (J was {previous} before)"
+    );
+    let refusal = Refusal::value("material_invalid_compliance", what, "").naming("creep compliance");
+    refusal.valued(value).allowing(allowed).into()
 }
 
 /// The error of a rheology without an exact exponential series, which `what` needs.

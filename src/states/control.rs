@@ -189,7 +189,7 @@ impl Judge<StatesContact> for OnLevels {
             let [along, pressed] =
                 [along, greatest[1] / reached[1]].map(|ahead| if ahead.is_finite() { ahead.max(1.0) } else { 1.0 });
             let (pressed, [far, most, done]) = (along.max(pressed), shear.maxima.map(|most| SMALL * most));
-            // half of the aim: it errs with the normal load, and with its own
+            // half of the aim: beside an error of its own it has that of the normal load
             let scales = [shear.displacement().abs().max(far * along), shear.force.abs().max(most * pressed)]
                 .map(|scale| 0.5 * scale);
             see([off[0], off[2]], scales);

@@ -134,8 +134,7 @@ impl SubsurfaceStress {
     pub(crate) fn body_of(kernel: &InfluenceKernel, changes: bool) -> Result<HalfSpace> {
         let refused = |allowed: &'static str| {
             let what = format!("the stress below the surface is not known of this body ({kernel})");
-            let range = format!(": it must be {allowed}");
-            Refusal::unsupported("kernel_no_stress", what, &range).allowing(allowed).into()
+            Refusal::unsupported("kernel_no_stress", what, "").must_be(allowed).into()
         };
         match kernel.half_space_below() {
             None => Err(refused("a half-space, one periodic along both axes, or a line contact of half-spaces")),

@@ -288,12 +288,12 @@ fn sized(given: Option<(&'static str, Option<f64>)>, column: TakenColumn) -> Res
     let refused = |unit: &str, size: Option<f64>| {
         let (line, index, heading) = (column.line(), column.index() + 1, column.heading());
         let expected = name(column.quantity, given);
+        let size = size.map(|size| format!("; of {unit} it is {}", rounded(size, 5))).unwrap_or_default();
         let what = format!(
             "line {line}, column {index}: the heading {heading:?} says {unit}, but Units::{field} = {given} means \
-             {expected}"
+             {expected}{size}"
         );
-        let size = size.map(|size| format!("; of {unit} it is {}", rounded(size, 5))).unwrap_or_default();
-        Err(Refusal::value("table_unit", what, &size).naming(field).valued(given).into())
+        Err(Refusal::value("table_unit", what, "").naming(field).valued(given).into())
     };
     match &column.unit_of {
         UnitOf::Sizes(unit, sizes) if !sizes.iter().any(|&size| same(size, given)) => {

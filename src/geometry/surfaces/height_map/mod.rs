@@ -236,9 +236,11 @@ fn nothing_known() -> Error {
 
 /// The error of a height that overflows.
 pub(super) fn not_finite(entry: usize, value: f64) -> Error {
-    let what = format!("height {entry} of the map is {value:?}");
-    let range = ": heights must be finite and within ±1e300 m, or NaN where nothing was measured";
-    Refusal::value("map_not_finite", what, range)
+    let what = format!(
+        "height {entry} of the map is {value:?}: heights must be finite and within ±1e300 m, or NaN where nothing was \
+         measured"
+    );
+    Refusal::value("map_not_finite", what, "")
         .naming("height")
         .valued(value)
         .allowing("finite and within ±1e300 m, or NaN")
