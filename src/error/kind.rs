@@ -2,7 +2,7 @@
 
 use std::io;
 
-use super::{Error, RanksError, Refusal, StepError};
+use super::{Error, RanksError, StepError};
 
 /// What sort of failure an [`Error`] is, for programs that map errors to others. The error itself tells field, value
 /// and remedy.
@@ -127,13 +127,6 @@ impl Error {
             Error::Output(error) => Some(error.kind()),
             Error::Unreadable { kind, .. } => *kind,
             _ => self.refusal()?.0.io_kind,
-        }
-    }
-
-    fn refusal(&self) -> Option<&Refusal> {
-        match self {
-            Error::Refused(refusal) | Error::Checkpoint { cause: refusal, .. } => Some(refusal),
-            _ => None,
         }
     }
 

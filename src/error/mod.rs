@@ -294,6 +294,16 @@ pub enum Error {
     Refused(#[from] Refusal),
 }
 
+impl Error {
+    /// What was refused, by itself or in a checkpoint.
+    fn refusal(&self) -> Option<&Refusal> {
+        match self {
+            Error::Refused(refusal) | Error::Checkpoint { cause: refusal, .. } => Some(refusal),
+            _ => None,
+        }
+    }
+}
+
 /// What slides, by how much, and what to do.
 fn sliding(over_limit: f64, direction: Option<[f64; 3]>) -> String {
     let times = rounded(over_limit, 5);
