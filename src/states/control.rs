@@ -206,7 +206,7 @@ impl Judge<StatesContact> for OnLevels {
             let lasting = contact.along(end, end - now, None)?.map_or(0.0, lasting);
             let steps = AIM * lasting * (time / (end - now)).min(f64::from(PARTS_OF_RUN));
             see([steps * off[1], 0.0], scales);
-            halves.levels.extrapolate_loss([contact, &*whole].map(|contact| &contact.levels), OF_HALVES);
+            halves.levels.extrapolate_losses([contact, &*whole].map(|contact| &contact.levels), OF_HALVES);
         }
         // what steps like this one add since the last corner, and nothing brings back, may be as large as the
         // tolerance: to the depth under a spring, and to the surface of bodies apart that resist rates alone

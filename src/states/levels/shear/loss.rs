@@ -116,12 +116,18 @@ impl Levels {
         Some([far + (one.slid - two.slid).abs(), motion, force, lost, work])
     }
 
-    /// Continues the loss of a step in halves by so much of its difference to that of the whole: every step errs in the
-    /// same sense, and nothing brings back a loss.
-    pub(in crate::states) fn extrapolate_loss(&mut self, [before, whole]: [&Levels; 2], share: f64) {
-        if let (Some(shear), Some(before), Some(whole)) = (&mut self.shear, &before.shear, &whole.shear) {
-            let lost = f64::max(before.lost, shear.lost + share * (shear.lost - whole.lost));
-            (shear.lost, shear.work) = (lost, shear.work + lost - shear.lost);
+    /// What slip and creep have dissipated.
+    fn dissipated(&self) -> Option<[f64; 2]> {
+        self.shear.as_ref().map(|shear| [shear.lost, shear.work - shear.lost - self.stored_along()])
+    }
+
+    /// Continues what a step in halves dissipates by so much of its difference to that of the whole: every step errs in
+    /// the same sense, and nothing brings it back.
+    pub(in crate::states) fn extrapolate_losses(&mut self, [before, whole]: [&Levels; 2], share: f64) {
+        let [Some(before), Some(own), Some(whole)] = [before, &*self, whole].map(Levels::dissipated) else { return };
+        let [slip, creep] = [0, 1].map(|k| f64::max(before[k] - own[k], share * (own[k] - whole[k])));
+        if let Some(shear) = &mut self.shear {
+            (shear.lost, shear.work) = (shear.lost + slip, shear.work + slip + creep);
         }
     }
 }
