@@ -1,5 +1,6 @@
 use crate::contact::Settings;
 use crate::error::{Result, within};
+use crate::study::course::COURSE;
 
 /// The accuracy of a result: its error relative to the maximum value of the run. It gives the tolerances of a
 /// [`Study`](crate::study::Study).
@@ -17,12 +18,6 @@ use crate::error::{Result, within};
 pub struct Accuracy {
     target: f64,
 }
-
-/// Part of the target for the residual of the solver, relative to the displacement: far below the errors of mesh and
-/// time.
-const OF_SOLVER: f64 = 0.01;
-/// Part of the target for the series of a body that has none.
-const OF_SERIES: f64 = 0.1;
 
 #[cfg(feature = "serde")]
 impl TryFrom<f64> for Accuracy {
@@ -70,8 +65,8 @@ impl Accuracy {
 
     /// Settings with the tolerances of this accuracy; the other settings are default.
     pub fn settings(&self) -> Settings {
-        let tolerance = (OF_SOLVER * self.target).clamp(1e-12, 1e-3);
-        let series_tolerance = (OF_SERIES * self.target).clamp(1e-7, 1e-2);
+        let tolerance = (COURSE.of_solver * self.target).clamp(1e-12, 1e-3);
+        let series_tolerance = (COURSE.of_series * self.target).clamp(1e-7, 1e-2);
         Settings { tolerance, series_tolerance, ..Settings::default() }
     }
 }

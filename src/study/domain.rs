@@ -10,17 +10,35 @@ use crate::load::Load;
 use crate::states::{as_elastic, greatest, sampled};
 use crate::study::scene::StudyScene;
 
-/// Number of loads of a run whose tilt or load point changes that give a contact.
-const OF_TURNING: usize = 16;
 /// Cells along a side of the contacts that find the domain.
 const CELLS: usize = 24;
-/// Maximum number of domains tried, each at most ten times as large or as small as the last.
-const MOST_DOMAINS: usize = 60;
-/// A domain is accepted if the contact spans a fraction of it in this range.
-const FILLED: [f64; 2] = [0.45, 0.92];
-/// Ratio of the domain to the rectangle of the contact, and its growth where a run reaches its edge.
-const DOMAIN_TO_CONTACT: f64 = 1.12;
-const GROWTH: f64 = 1.2;
+
+/// How the domain is sought, on the scenes of [`COURSE`](super::course::COURSE).
+struct Search {
+    /// Number of loads of a run whose tilt or load point changes that give a contact.
+    of_turning: usize,
+    /// Maximum number of domains tried, each at most ten times as large or as small as the last.
+    most_domains: usize,
+    /// The range of the part of a domain that the contact spans in one that is accepted; from no contact known, ...
+    filled: [f64; 2],
+    /// ... the next domain is this times as long where the contact reaches its edge, and where nothing touches.
+    factors: [f64; 2],
+    /// Ratio of the domain to the rectangle of the contact, ...
+    to_contact: f64,
+    /// ... of the next domain tried to it, and its growth where a run reaches its edge.
+    next_to_contact: f64,
+    growth: f64,
+}
+
+const SEARCH: Search = Search {
+    of_turning: 16,
+    most_domains: 60,
+    filled: [0.45, 0.92],
+    factors: [1.7, 0.3],
+    to_contact: 1.12,
+    next_to_contact: 1.3,
+    growth: 1.2,
+};
 
 /// A side of the domain.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -78,7 +96,7 @@ impl Domain {
 
     /// Larger, for a contact that reaches the edge.
     pub(super) fn grown(&self) -> Domain {
-        Domain { reach: self.reach.map(|half| GROWTH * half), ..*self }
+        Domain { reach: self.reach.map(|half| SEARCH.growth * half), ..*self }
     }
 
     /// Whether all sides are given, so that there is nothing to find.
@@ -93,7 +111,7 @@ impl Domain {
     }
 
     fn lengths(&self) -> [f64; 2] {
-        [0, 1].map(|axis| self.sides[axis].given().unwrap_or(2.0 * DOMAIN_TO_CONTACT * self.reach[axis]))
+        [0, 1].map(|axis| self.sides[axis].given().unwrap_or(2.0 * SEARCH.to_contact * self.reach[axis]))
     }
 
     /// The grid with so many cells across the widest contact, or the longer side where both are given.
@@ -118,19 +136,23 @@ impl Domain {
         let is_found = sides.map(|side| side == Side::Found);
         let (first, loads) = first_length(scene, sides)?;
         let mut lengths = sides.map(|side| side.given().unwrap_or(first));
-        for _ in 0..MOST_DOMAINS {
+        for _ in 0..SEARCH.most_domains {
             let builder = scene.builder(grid_of(sides, lengths)?)?;
             let factors = match greatest_contacts(&builder, &loads, sides) {
-                Err(Error::Step(StepError::ContactAtEdge { .. } | StepError::LoadOutsideHull { .. })) => [1.7; 2],
-                Err(Error::NothingToTouch { .. }) => [0.3; 2],
+                Err(Error::Step(StepError::ContactAtEdge { .. } | StepError::LoadOutsideHull { .. })) => {
+                    [SEARCH.factors[0]; 2]
+                }
+                Err(Error::NothingToTouch { .. }) => [SEARCH.factors[1]; 2],
                 Err(error) => return Err(error),
                 Ok(domain) => {
                     let filled = [0, 1].map(|axis| 2.0 * domain.reach[axis] / lengths[axis]);
-                    let fits = |axis: usize| (FILLED[0]..=FILLED[1]).contains(&filled[axis]);
+                    let fits = |axis: usize| (SEARCH.filled[0]..=SEARCH.filled[1]).contains(&filled[axis]);
                     if (0..2).all(|axis| !is_found[axis] || fits(axis)) && domain.has_contact() {
                         return Ok(domain);
                     }
-                    filled.map(|filled| (filled.max(2.0 / CELLS as f64) * 1.3).clamp(0.1, 1.7))
+                    filled.map(|filled| {
+                        (filled.max(2.0 / CELLS as f64) * SEARCH.next_to_contact).clamp(0.1, SEARCH.factors[0])
+                    })
                 }
             };
             lengths = [0, 1].map(|axis| if is_found[axis] { lengths[axis] * factors[axis] } else { lengths[axis] });
@@ -158,7 +180,9 @@ fn greatest_loads(scene: &StudyScene<'_>, compliance: f64) -> Result<Vec<Vec<Loa
     for (all, loads) in
         all.iter().zip(&mut loads).filter(|(all, _)| all.iter().any(|load| load.tilt() != all[0].tilt()))
     {
-        loads.extend(all.iter().step_by(all.len().div_ceil(OF_TURNING)).map(|load| as_elastic(*load, compliance)));
+        loads.extend(
+            all.iter().step_by(all.len().div_ceil(SEARCH.of_turning)).map(|load| as_elastic(*load, compliance)),
+        );
     }
     let most = loads.iter().map(Vec::len).max().unwrap_or_default();
     Ok((0..most).map(|k| loads.iter().map(|own| own[k.min(own.len() - 1)]).collect()).collect())

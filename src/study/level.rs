@@ -9,16 +9,12 @@ use crate::error::{Error, Result};
 use crate::fields::KeptFields;
 use crate::observe::grid_convergence::{difference, difference_of_fields};
 use crate::run::Stepping;
+use crate::study::course::COURSE;
 use crate::study::domain::{Domain, Side};
 use crate::study::observable::{Observed, Reading};
 use crate::study::scene::StudyScene;
 use crate::study::{Cost, StudyProgress};
 use crate::{Grid, memory};
-
-/// Part of the accuracy that is left to the pressure fields in time.
-const OF_FIELDS: f64 = 0.3;
-/// Least accuracy of pressure fields in time.
-const LEAST_FIELDS: f64 = 1e-5;
 
 /// What all runs of a study have in common.
 pub(super) struct Runs<'a, 'p> {
@@ -68,7 +64,7 @@ impl Runs<'_, '_> {
             run = run.cancelled_by(Arc::clone(flag));
         }
         if !self.fields_at.is_empty() {
-            let in_time = (OF_FIELDS * accuracy.target()).min(tolerance).clamp(LEAST_FIELDS, 0.1);
+            let in_time = (COURSE.of_fields * accuracy.target()).min(tolerance).clamp(COURSE.least_of_fields, 0.1);
             run = run.sample_at(self.fields_at)?.fields_to(in_time)?;
         }
         let (mut times, mut values, mut fields) = (Vec::new(), vec![Vec::new(); self.observed.len()], Vec::new());

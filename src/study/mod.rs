@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod cost;
+mod course;
 mod domain;
 mod level;
 mod observable;

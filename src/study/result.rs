@@ -10,12 +10,9 @@ use crate::error::{Error, Result};
 use crate::fields::{Fields, KeptFields};
 use crate::file::replace;
 use crate::run::Stepping;
+use crate::study::course::COURSE;
 use crate::study::level::Level;
 use crate::study::{Accuracy, Cost};
-
-/// Parts of an accuracy for mesh and time, of which the cost for it is told.
-const TO_MESH: f64 = 0.6;
-const TO_TIME: f64 = 0.4;
 
 /// A mesh of a study, and what its run took.
 #[derive(Debug, Clone, PartialEq)]
@@ -255,8 +252,8 @@ impl StudyResult {
         let (mut finer, mut shorter) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
         for own in self.quantities.iter().filter(|own| own.is_asked) {
             let mesh = own.mesh?;
-            finer = finer.max((mesh / (TO_MESH * target)).powf(1.0 / own.order.unwrap_or(1.0)));
-            shorter = shorter.max(own.time / (TO_TIME * target));
+            finer = finer.max((mesh / ((1.0 - COURSE.in_time) * target)).powf(1.0 / own.order.unwrap_or(1.0)));
+            shorter = shorter.max(own.time / (COURSE.in_time * target));
         }
         let coarsest = self.meshes.first()?.cells;
         // no coarser than the first mesh

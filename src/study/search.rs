@@ -6,38 +6,12 @@ use super::domain::no_domain;
 use crate::Grid;
 use crate::error::{Error, Result, StepError, count_within};
 use crate::observe::grid_convergence::{OfMesh, SINGULAR, SMOOTH};
+use crate::study::course::COURSE;
 use crate::study::domain::Domain;
 use crate::study::level::{Level, Runs};
 use crate::study::observable::{Observed, Reading};
 use crate::study::result::{Growth, Mesh, Steps, StudyResult};
 use crate::study::{Budget, Ending, Measured, Study, StudyProgress};
-
-/// Cells across the widest contact on the first mesh, and across a domain that is given.
-const ACROSS: f64 = 16.0;
-const ACROSS_GIVEN: f64 = 32.0;
-/// How many times as fine the next mesh is: after the first one, and at least and at most.
-const RATIO: f64 = 1.5;
-const RATIOS: [f64; 2] = [1.25, 2.0];
-/// Part of what is left to the mesh at which the next mesh aims.
-const AIM: f64 = 0.7;
-/// Part of the accuracy for the error in time, and at which shorter steps aim; and the tolerance of steps to begin
-/// with.
-const IN_TIME: f64 = 0.4;
-const AIM_IN_TIME: f64 = 0.3;
-const TOLERANCE: f64 = 0.25;
-/// Ratio of the tolerances of two runs whose difference is the error in time of the first. The second errs by a part
-/// of this.
-const SHORTER: f64 = 8.0;
-const OF_BOTH: f64 = SHORTER / (SHORTER - 1.0);
-/// Tolerances of adaptive steps, and the ratio of those of finer meshes, whose steps end where those of the first do.
-const TOLERANCES: [f64; 2] = [1e-9, 0.1];
-const ON_FINER: f64 = 2.0;
-/// Most times that the steps are shortened, that a domain is grown, and meshes on which a quantity may not converge.
-const MOST_SHORTENED: usize = 3;
-const MOST_GROWN: usize = 8;
-const MOST_UNCONVERGED: usize = 4;
-/// A domain is made anew if the contact is narrower than the one it was found for by this factor.
-const NARROWER: f64 = 0.75;
 
 /// The first mesh: its run in the steps of the study, and its errors in time.
 struct First {
@@ -62,13 +36,13 @@ pub(super) fn run(study: Study<'_>, progress: &mut dyn FnMut(StudyProgress) -> C
         Some(domain) => domain,
         None => Domain::find(scene, sides)?,
     };
-    for _ in 0..MOST_GROWN {
+    for _ in 0..COURSE.most_grown {
         if let Some(result) = on_domain(runs, domain, &budget)? {
             return Ok(result);
         }
         domain = domain.grown();
     }
-    Err(no_domain(domain.grid(ACROSS)?.lengths()[0]))
+    Err(no_domain(domain.grid(COURSE.across)?.lengths()[0]))
 }
 
 /// Meshes on a domain until what is asked is met, or the budget ends it; nothing where the contact reaches the edge
@@ -76,7 +50,7 @@ pub(super) fn run(study: Study<'_>, progress: &mut dyn FnMut(StudyProgress) -> C
 fn on_domain(runs: &mut Runs<'_, '_>, domain: Domain, budget: &Budget) -> Result<Option<StudyResult>> {
     let (observed, accuracy) = (runs.observed, runs.scene.accuracy);
     let First { level, domain, mut across, steps, in_time, steps_order } = first_mesh(runs, domain, budget.cells)?;
-    let on_finer = (ON_FINER * steps.tolerance).min(TOLERANCES[1]);
+    let on_finer = (COURSE.on_finer * steps.tolerance).min(COURSE.tolerances[1]);
     let mut meshes = vec![Mesh::of(&level, vec![None; observed.len()])];
     let (mut finest, mut steps, mut unconverged) = (level, steps, 0);
     loop {
@@ -84,7 +58,7 @@ fn on_domain(runs: &mut Runs<'_, '_>, domain: Domain, budget: &Budget) -> Result
         let asked = || measured.iter().filter(|own| own.is_asked);
         let is_open = meshes.len() > 2 && asked().any(|own| own.error().is_none());
         unconverged = if is_open { unconverged + 1 } else { 0 };
-        let ratio = asked().filter_map(|own| own.ratio(accuracy.target())).reduce(f64::max).unwrap_or(RATIO);
+        let ratio = asked().filter_map(|own| own.ratio(accuracy.target())).reduce(f64::max).unwrap_or(COURSE.ratio);
         let growth = Growth { steps: steps_order, convolutions: convolutions_order(&meshes) };
         let mut result = StudyResult::new(finest, meshes, measured, accuracy, steps, growth);
         runs.expected = result.cost_for(accuracy);
@@ -116,14 +90,14 @@ fn on_domain(runs: &mut Runs<'_, '_>, domain: Domain, budget: &Budget) -> Result
 /// The next mesh, so many times as fine as one with so many cells across; the finest one that is allowed, where that
 /// is finer enough.
 fn next_grid(domain: &Domain, across: f64, ratio: f64, most_cells: usize) -> Result<(f64, Grid)> {
-    let ratio = ratio.clamp(RATIOS[0], RATIOS[1]);
+    let ratio = ratio.clamp(COURSE.ratios[0], COURSE.ratios[1]);
     let next = domain.grid(ratio * across)?;
     if next.len() <= most_cells {
         return Ok((ratio * across, next));
     }
     // sizes of grids go by steps of up to a tenth
     let allowed = 0.9 * ratio * (most_cells as f64 / next.len() as f64).sqrt();
-    let finer = allowed.clamp(RATIOS[0], ratio) * across;
+    let finer = allowed.clamp(COURSE.ratios[0], ratio) * across;
     Ok((finer, domain.grid(finer)?))
 }
 
@@ -139,7 +113,7 @@ impl Budget {
         match () {
             () if asked.clone().all(|own| own.error().is_some_and(|error| error <= accuracy)) => Some(Ending::Reached),
             () if asked.any(|own| own.time >= accuracy) => Some(Ending::Time),
-            () if unconverged >= MOST_UNCONVERGED => Some(Ending::NoConvergence),
+            () if unconverged >= COURSE.most_unconverged => Some(Ending::NoConvergence),
             () if next.len() > self.cells => Some(Ending::Cells),
             () if self.bytes.is_some_and(|most| bytes > most) => Some(Ending::Memory),
             () if self.work.is_some_and(|most| work + expected > most) => Some(Ending::Work),
@@ -151,8 +125,8 @@ impl Budget {
 /// Runs the first mesh on a domain that holds the contact, in steps that are short enough.
 fn first_mesh(runs: &mut Runs<'_, '_>, mut domain: Domain, most_cells: usize) -> Result<First> {
     let accuracy = runs.scene.accuracy.target();
-    let mut tolerance = (TOLERANCE * accuracy).clamp(TOLERANCES[0], TOLERANCES[1]);
-    let mut across = if domain.is_given() { ACROSS_GIVEN } else { ACROSS };
+    let mut tolerance = (COURSE.tolerance * accuracy).clamp(COURSE.tolerances[0], COURSE.tolerances[1]);
+    let mut across = if domain.is_given() { COURSE.across_given } else { COURSE.across };
     let mut tries = 0;
     let level = loop {
         tries += 1;
@@ -160,32 +134,37 @@ fn first_mesh(runs: &mut Runs<'_, '_>, mut domain: Domain, most_cells: usize) ->
         let allowed = "those of the first mesh that resolves the scene, or more";
         count_within("cells of a study", most_cells, grid.len() <= most_cells, allowed)?;
         match runs.level(grid, tolerance, &[]) {
-            Err(Error::Step(StepError::ContactAtEdge { .. })) if !domain.is_given() && tries < MOST_GROWN => {
+            Err(Error::Step(StepError::ContactAtEdge { .. })) if !domain.is_given() && tries < COURSE.most_grown => {
                 domain = domain.grown();
             }
             // the first mesh that resolves the attraction
-            Err(Error::ZoneNotResolved { .. }) => across *= RATIO,
+            Err(Error::ZoneNotResolved { .. }) => across *= COURSE.ratio,
             Err(error) => return Err(error),
-            Ok(level) if level.domain.is_narrower(&domain, NARROWER) && tries < MOST_GROWN => domain = level.domain,
+            Ok(level) if level.domain.is_narrower(&domain, COURSE.narrower) && tries < COURSE.most_grown => {
+                domain = level.domain
+            }
             Ok(level) => break level,
         }
     };
     let mut base = level;
     let (common, mut stops, mut steps_order) = (base.times.clone(), Vec::new(), 0.0);
     let mut in_time = Vec::new();
-    for tries in 0..=MOST_SHORTENED {
-        let fine = runs.level(base.grid.clone(), (tolerance / SHORTER).max(TOLERANCES[0]), &common)?;
+    // the second of the two errs by a part of their difference itself
+    let of_both = COURSE.shorter / (COURSE.shorter - 1.0);
+    for tries in 0..=COURSE.most_shortened {
+        let fine = runs.level(base.grid.clone(), (tolerance / COURSE.shorter).max(COURSE.tolerances[0]), &common)?;
         if tries == 0 {
             let more = fine.steps() as f64 / base.steps().max(1) as f64;
-            steps_order = (more.ln() / SHORTER.ln()).clamp(0.0, 1.0);
+            steps_order = (more.ln() / COURSE.shorter.ln()).clamp(0.0, 1.0);
         }
         let differences = base.differences(&fine, runs.observed);
-        in_time = differences.into_iter().map(|difference| OF_BOTH * difference).collect();
+        in_time = differences.into_iter().map(|difference| of_both * difference).collect();
         let worst = worst_asked(runs.observed, &in_time);
-        if worst <= IN_TIME * accuracy || tries == MOST_SHORTENED || tolerance <= TOLERANCES[0] {
+        if worst <= COURSE.in_time * accuracy || tries == COURSE.most_shortened || tolerance <= COURSE.tolerances[0] {
             break;
         }
-        tolerance = (tolerance * (AIM_IN_TIME * accuracy / worst).max(1.0 / SHORTER)).max(TOLERANCES[0]);
+        tolerance =
+            (tolerance * (COURSE.aim_in_time * accuracy / worst).max(1.0 / COURSE.shorter)).max(COURSE.tolerances[0]);
         base = runs.level(base.grid.clone(), tolerance, &common)?;
         stops.clone_from(&common);
     }
@@ -225,7 +204,7 @@ fn measured(observed: &[Observed<'_>], meshes: &[Mesh], in_time: &[f64], accurac
 impl Measured {
     /// How many times as fine a mesh is expected to meet an accuracy; nothing where it is met or nothing is expected.
     fn ratio(&self, accuracy: f64) -> Option<f64> {
-        let left = AIM * (accuracy - self.time).max(0.1 * accuracy);
+        let left = COURSE.aim * (accuracy - self.time).max(0.1 * accuracy);
         let mesh = self.mesh.filter(|mesh| *mesh > left)?;
         Some((mesh / left).powf(1.0 / self.order.unwrap_or(1.0)))
     }
