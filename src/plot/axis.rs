@@ -1,10 +1,8 @@
 //! Axes: their ticks, and the numbers on them.
 
 use crate::plot::quantity::{scientific, superscript};
+use crate::plot::sizes::SIZES;
 use crate::plot::{Quantity, font};
-
-/// Size of the numbers along an axis in pixels per em.
-pub(super) const TICK_SIZE: f64 = 24.0;
 
 /// An axis as drawn. Positions are fractions of its length.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,7 +32,11 @@ pub(super) struct Room {
 impl Room {
     /// The distance in pixels that ticks with these texts need.
     fn needed<'a>(self, texts: impl Iterator<Item = &'a str>) -> f64 {
-        if self.horizontal { texts.map(|text| font::width(text, TICK_SIZE)).fold(0.0, f64::max) + 28.0 } else { 44.0 }
+        if self.horizontal {
+            texts.map(|text| font::width(text, SIZES.numbers)).fold(0.0, f64::max) + 28.0
+        } else {
+            44.0
+        }
     }
 }
 
@@ -112,7 +114,7 @@ impl DrawnAxis {
 
     /// Width of the widest number in pixels.
     pub(super) fn widest(&self) -> f64 {
-        self.ticks.iter().map(|tick| font::width(&tick.1, TICK_SIZE)).fold(0.0, f64::max)
+        self.ticks.iter().map(|tick| font::width(&tick.1, SIZES.numbers)).fold(0.0, f64::max)
     }
 }
 
@@ -210,7 +212,7 @@ mod tests {
                     .ticks
                     .iter()
                     .map(|(at, text)| {
-                        let half = 0.5 * font::width(text, TICK_SIZE);
+                        let half = 0.5 * font::width(text, SIZES.numbers);
                         [at * length - half, at * length + half]
                     })
                     .collect();

@@ -4,20 +4,14 @@ use std::path::Path;
 
 use crate::error::{Error, Result};
 use crate::plot::axis::round_step;
-use crate::plot::color_bar::{self, BAR_WIDTH};
+use crate::plot::color_bar;
 use crate::plot::curve::Curve;
 use crate::plot::frame::width_beside;
 use crate::plot::legend::{self, points_along};
 use crate::plot::map::extremes;
 use crate::plot::quantity::drawable_as_power;
-use crate::plot::{BELOW, Canvas, Color, DrawnAxis, Frame, Legend, Picture, Quantity, Room, Style, drawable};
-
-/// Width and height of a chart in pixels.
-const SIZE: [u32; 2] = [1200, 800];
-/// Width of the space to the right of the axes, the least to their left, and height of that above them in pixels.
-const RIGHT: f64 = 40.0;
-const LEAST_LEFT: f64 = 115.0;
-const TOP: f64 = 56.0;
+use crate::plot::sizes::SIZES;
+use crate::plot::{Canvas, Color, DrawnAxis, Frame, Legend, Picture, Quantity, Room, Style, drawable};
 
 /// Which axes of a chart are logarithmic. Numbers far from 1 are powers of ten there, in units without a prefix.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -151,7 +145,7 @@ impl Chart {
                 break;
             }
         }
-        let mut canvas = Canvas::new(SIZE)?;
+        let mut canvas = Canvas::new(SIZES.chart)?;
         frame.draw_grid(&mut canvas);
         frame.draw(&mut canvas, &self.title); // below the curves: those at zero stay visible
         for curve in &self.curves {
@@ -161,23 +155,23 @@ impl Chart {
         legend::draw(&mut canvas, &entries, self.legend, &frame, &self.points(&frame));
         if let Some(bar) = &self.bar {
             let color = |at: f64| Color::on_scale(LIGHTEST * at);
-            let axis = bar.axis(frame.bottom - TOP)?;
-            color_bar::draw(&mut canvas, frame.right, [TOP, frame.bottom], &axis, color, [false; 2]);
+            let axis = bar.axis(frame.bottom - SIZES.chart_top)?;
+            color_bar::draw(&mut canvas, frame.right, [SIZES.chart_top, frame.bottom], &axis, color, [false; 2]);
         }
         Ok(Picture::new(canvas))
     }
 
     /// The axes around all points, the vertical one longer by the share `above` of the height of the points.
     fn frame(&self, above: f64) -> Result<Frame> {
-        let [width, height] = SIZE.map(f64::from);
-        let bar = self.bar.as_ref().map_or(0.0, |_| f64::from(BAR_WIDTH));
-        let [right, bottom] = [width - RIGHT.max(bar), height - BELOW];
+        let [width, height] = SIZES.chart.map(f64::from);
+        let bar = self.bar.as_ref().map_or(0.0, |_| f64::from(SIZES.beside_bar));
+        let [right, bottom] = [width - SIZES.chart_right.max(bar), height - SIZES.below];
         let horizontal = |left: f64| self.axis(0, Room { length: right - left, horizontal: true }, 0.0);
-        horizontal(LEAST_LEFT)?; // names a wrong x before a wrong y
-        let y = self.axis(1, Room { length: bottom - TOP, horizontal: false }, above)?;
+        horizontal(SIZES.chart_left)?; // names a wrong x before a wrong y
+        let y = self.axis(1, Room { length: bottom - SIZES.chart_top, horizontal: false }, above)?;
         // the horizontal axis is as long as the numbers of the vertical one leave
-        let left = width_beside(&y).max(LEAST_LEFT);
-        Ok(Frame { left, top: TOP, right, bottom, axes: [horizontal(left)?, y] })
+        let left = width_beside(&y).max(SIZES.chart_left);
+        Ok(Frame { left, top: SIZES.chart_top, right, bottom, axes: [horizontal(left)?, y] })
     }
 
     /// The pieces of a curve in pixels.

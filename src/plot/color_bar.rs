@@ -1,15 +1,7 @@
 //! The colour bar beside a map or a chart.
 
-use crate::plot::frame::LABEL_SIZE;
-use crate::plot::{Anchor, Canvas, Color, DrawnAxis, TICK_SIZE};
-
-/// Width of a colour bar with its numbers and label in pixels.
-pub(super) const BAR_WIDTH: u32 = 155;
-/// Width of the bar and height of the triangles at its ends in pixels.
-const WIDTH: f64 = 30.0;
-const TRIANGLE: f64 = 26.0;
-/// Length of ticks in pixels.
-const TICK: f64 = 7.0;
+use crate::plot::sizes::SIZES;
+use crate::plot::{Anchor, Canvas, Color, DrawnAxis};
 
 /// Draws the bar of `axis` to the right of `left` from `top` to `bottom`, with triangles at its lower and upper end
 /// where values lie `beyond` it; `color` is the colour at a fraction of the axis.
@@ -21,13 +13,13 @@ pub(super) fn draw(
     color: impl Fn(f64) -> Color,
     beyond: [bool; 2],
 ) {
-    let (left, right) = (left + 10.0, left + 10.0 + WIDTH);
+    let (left, right) = (left + 10.0, left + 10.0 + SIZES.bar);
     let colors: Vec<Color> = (0..256).rev().map(|k| color(f64::from(k) / 255.0)).collect();
     canvas.cells([left, top, right, bottom], 1, &colors);
     let middle = 0.5 * (left + right);
     let mut outline = vec![vec![[left, top], [left, bottom]], vec![[right, top], [right, bottom]]];
     for (is_beyond, end, tip, fraction) in
-        [(beyond[0], bottom, bottom + TRIANGLE, 0.0), (beyond[1], top, top - TRIANGLE, 1.0)]
+        [(beyond[0], bottom, bottom + SIZES.triangle, 0.0), (beyond[1], top, top - SIZES.triangle, 1.0)]
     {
         if is_beyond {
             canvas.polygon(&[[left, end], [right, end], [middle, tip]], color(fraction));
@@ -38,12 +30,18 @@ pub(super) fn draw(
     }
     for (at, text) in &axis.ticks {
         let y = (bottom - at * (bottom - top)).round();
-        outline.push(vec![[right, y], [right + TICK, y]]);
-        canvas.text(text, [right + TICK + 5.0, y + 0.35 * TICK_SIZE], TICK_SIZE, Anchor::Start, false);
+        outline.push(vec![[right, y], [right + SIZES.bar_tick, y]]);
+        canvas.text(
+            text,
+            [right + SIZES.bar_tick + 5.0, y + 0.35 * SIZES.numbers],
+            SIZES.numbers,
+            Anchor::Start,
+            false,
+        );
     }
     canvas.lines(&outline, 2.0, Color::BLACK);
-    let baseline = right + TICK + axis.widest() + 10.0 + LABEL_SIZE;
-    canvas.fitted_text(&axis.label, [baseline, 0.5 * (top + bottom)], LABEL_SIZE, bottom - top + 40.0, true);
+    let baseline = right + SIZES.bar_tick + axis.widest() + 10.0 + SIZES.label;
+    canvas.fitted_text(&axis.label, [baseline, 0.5 * (top + bottom)], SIZES.label, bottom - top + 40.0, true);
 }
 
 #[cfg(test)]

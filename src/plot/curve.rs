@@ -1,10 +1,7 @@
 //! A curve of a chart.
 
+use crate::plot::sizes::SIZES;
 use crate::plot::{Canvas, Color};
-
-/// Width of lines and radius of dots in pixels.
-const LINE_WIDTH: f64 = 3.0;
-const DOT_RADIUS: f64 = 5.5;
 
 /// How a curve is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -47,10 +44,10 @@ impl Style {
     /// Draws a curve through `pieces` with dots at `dots`.
     pub(super) fn draw(self, canvas: &mut Canvas, pieces: &[Vec<[f64; 2]>], dots: &[[f64; 2]], color: Color) {
         if self != Style::Dots {
-            canvas.lines(pieces, LINE_WIDTH, color);
+            canvas.lines(pieces, SIZES.line, color);
         }
         if self != Style::Line {
-            canvas.dots(dots, DOT_RADIUS, color);
+            canvas.dots(dots, SIZES.dot, color);
         }
     }
 }

@@ -1,19 +1,7 @@
 //! The frame of charts and maps: axes, grid and labels around an area.
 
-use crate::plot::{Anchor, Canvas, Color, DrawnAxis, TICK_SIZE};
-
-/// Sizes of the labels of axes and of titles in pixels per em.
-pub(super) const LABEL_SIZE: f64 = 27.0;
-pub(super) const TITLE_SIZE: f64 = 29.0;
-/// Length of the ticks, and the distance from there to the numbers, in pixels.
-const TICK: f64 = 8.0;
-const GAP: f64 = 6.0;
-/// Distance from the edge of a picture to the labels in pixels.
-const EDGE: f64 = 10.0;
-/// Length by which title and label may exceed a frame, half of it at each end, in pixels.
-const BESIDE: f64 = 40.0;
-/// Height of the numbers and the label below a frame in pixels.
-pub(super) const BELOW: f64 = 85.0;
+use crate::plot::sizes::SIZES;
+use crate::plot::{Anchor, Canvas, Color, DrawnAxis};
 
 /// An area with a horizontal and a vertical axis, in pixels from the upper left corner of the picture.
 pub(super) struct Frame {
@@ -26,7 +14,7 @@ pub(super) struct Frame {
 
 /// Width that numbers and label need to the left of a frame in pixels.
 pub(super) fn width_beside(axis: &DrawnAxis) -> f64 {
-    (EDGE + LABEL_SIZE + 2.0 * GAP + axis.widest() + GAP + TICK).ceil()
+    (SIZES.edge + SIZES.label + 2.0 * SIZES.to_numbers + axis.widest() + SIZES.to_numbers + SIZES.tick).ceil()
 }
 
 impl Frame {
@@ -56,8 +44,8 @@ impl Frame {
         let corners = [[left, top], [left, bottom], [right, bottom], [right, top], [left, top]];
         let mut lines = vec![corners.to_vec()];
         for (axis, place) in [(x, [1.0, 0.0]), (y, [0.0, 1.0])] {
-            let ticks = axis.ticks.iter().map(|tick| (tick.0, TICK));
-            for (at, length) in ticks.chain(axis.minor.iter().map(|&at| (at, 0.5 * TICK))) {
+            let ticks = axis.ticks.iter().map(|tick| (tick.0, SIZES.tick));
+            for (at, length) in ticks.chain(axis.minor.iter().map(|&at| (at, 0.5 * SIZES.tick))) {
                 let [x, y] = self.place(at * place[0], at * place[1]);
                 lines.push(vec![[x, y], [x - length * place[1], y + length * place[0]]]);
             }
@@ -66,16 +54,22 @@ impl Frame {
         lines.iter_mut().flatten().flatten().for_each(|value| *value = value.round());
         canvas.lines(&lines, 2.0, Color::BLACK);
         for (at, text) in &x.ticks {
-            let at = [self.place(*at, 0.0)[0], bottom + TICK + GAP + 0.75 * TICK_SIZE];
-            canvas.text(text, at, TICK_SIZE, Anchor::Middle, false);
+            let at = [self.place(*at, 0.0)[0], bottom + SIZES.tick + SIZES.to_numbers + 0.75 * SIZES.numbers];
+            canvas.text(text, at, SIZES.numbers, Anchor::Middle, false);
         }
         for (at, text) in &y.ticks {
-            let at = [left - TICK - GAP, self.place(0.0, *at)[1] + 0.35 * TICK_SIZE];
-            canvas.text(text, at, TICK_SIZE, Anchor::End, false);
+            let at = [left - SIZES.tick - SIZES.to_numbers, self.place(0.0, *at)[1] + 0.35 * SIZES.numbers];
+            canvas.text(text, at, SIZES.numbers, Anchor::End, false);
         }
-        let below = bottom + TICK + GAP + TICK_SIZE + GAP + LABEL_SIZE;
-        canvas.fitted_text(&x.label, [middle[0], below], LABEL_SIZE, right - left + BESIDE, false);
-        canvas.fitted_text(&y.label, [EDGE + 0.8 * LABEL_SIZE, middle[1]], LABEL_SIZE, bottom - top + 60.0, true);
-        canvas.fitted_text(title, [middle[0], top - 18.0], TITLE_SIZE, right - left + BESIDE, false);
+        let below = bottom + SIZES.tick + SIZES.to_numbers + SIZES.numbers + SIZES.to_numbers + SIZES.label;
+        canvas.fitted_text(&x.label, [middle[0], below], SIZES.label, right - left + SIZES.title_beyond, false);
+        canvas.fitted_text(
+            &y.label,
+            [SIZES.edge + 0.8 * SIZES.label, middle[1]],
+            SIZES.label,
+            bottom - top + 60.0,
+            true,
+        );
+        canvas.fitted_text(title, [middle[0], top - 18.0], SIZES.title, right - left + SIZES.title_beyond, false);
     }
 }

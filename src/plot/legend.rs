@@ -1,16 +1,8 @@
 //! The legend of a chart, and where it hides least.
 
 use crate::plot::curve::Curve;
-use crate::plot::{Anchor, Canvas, Color, Frame, Legend, TICK_SIZE, font};
-
-/// Height of an entry, length of its line, and the space around entries in pixels.
-const ENTRY: f64 = 34.0;
-const LINE: f64 = 40.0;
-const SPACE: f64 = 12.0;
-/// Distance from the axes in pixels.
-const INSET: f64 = 14.0;
-/// Curves are regarded as points at most this far apart, in pixels.
-const SPACING: f64 = 5.0;
+use crate::plot::sizes::SIZES;
+use crate::plot::{Anchor, Canvas, Color, Frame, Legend, font};
 
 /// All positions, corners first: rows of three from the top, each from the left.
 const ALL: [usize; 9] = [2, 0, 8, 6, 1, 7, 5, 3, 4];
@@ -20,7 +12,9 @@ impl Legend {
     fn rectangle(position: usize, size: [f64; 2], frame: &Frame) -> [f64; 4] {
         let [width, height] = size;
         let (row, column) = (position / 3, position % 3);
-        let start = |low: f64, high: f64, size: f64| [low + INSET, 0.5 * (low + high - size), high - INSET - size];
+        let start = |low: f64, high: f64, size: f64| {
+            [low + SIZES.legend_inset, 0.5 * (low + high - size), high - SIZES.legend_inset - size]
+        };
         let left = start(frame.left, frame.right, width)[column];
         let top = start(frame.top, frame.bottom, height)[row];
         [left, top, left + width, top + height].map(f64::round)
@@ -44,7 +38,7 @@ impl Legend {
 pub(super) fn points_along(line: &[[f64; 2]]) -> impl Iterator<Item = [f64; 2]> {
     line.windows(2).flat_map(|ends| {
         let [dx, dy] = [ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]];
-        let count = (dx.hypot(dy) / SPACING).ceil().max(1.0);
+        let count = (dx.hypot(dy) / SIZES.curve_points).ceil().max(1.0);
         (0..=count as usize).map(move |k| {
             let t = k as f64 / count;
             [ends[0][0] + t * dx, ends[0][1] + t * dy]
@@ -54,8 +48,8 @@ pub(super) fn points_along(line: &[[f64; 2]]) -> impl Iterator<Item = [f64; 2]> 
 
 /// Width and height of a legend.
 fn size(entries: &[&Curve]) -> [f64; 2] {
-    let widest = entries.iter().map(|entry| font::width(&entry.label, TICK_SIZE)).fold(0.0, f64::max);
-    [3.0 * SPACE + LINE + widest, SPACE + ENTRY * entries.len() as f64]
+    let widest = entries.iter().map(|entry| font::width(&entry.label, SIZES.numbers)).fold(0.0, f64::max);
+    [3.0 * SIZES.around_entries + SIZES.entry_line + widest, SIZES.around_entries + SIZES.entry * entries.len() as f64]
 }
 
 /// How many of `points` the legend would cover.
@@ -73,9 +67,15 @@ pub(super) fn draw(canvas: &mut Canvas, entries: &[&Curve], preferred: Legend, f
     let outline = [[left, top], [right, top], [right, bottom], [left, bottom], [left, top]];
     canvas.lines(&[outline.map(|point| point.map(|value| value + 0.5)).to_vec()], 1.0, Color(190, 190, 190));
     for (k, Curve { label, color, style, .. }) in entries.iter().enumerate() {
-        let (x, y) = (left + SPACE, top + 0.5 * SPACE + ENTRY * (k as f64 + 0.5));
-        style.draw(canvas, &[vec![[x, y], [x + LINE, y]]], &[[x + 0.5 * LINE, y]], *color);
-        canvas.text(label, [x + LINE + SPACE, y + 0.35 * TICK_SIZE], TICK_SIZE, Anchor::Start, false);
+        let (x, y) = (left + SIZES.around_entries, top + 0.5 * SIZES.around_entries + SIZES.entry * (k as f64 + 0.5));
+        style.draw(canvas, &[vec![[x, y], [x + SIZES.entry_line, y]]], &[[x + 0.5 * SIZES.entry_line, y]], *color);
+        canvas.text(
+            label,
+            [x + SIZES.entry_line + SIZES.around_entries, y + 0.35 * SIZES.numbers],
+            SIZES.numbers,
+            Anchor::Start,
+            false,
+        );
     }
 }
 

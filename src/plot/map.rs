@@ -5,21 +5,9 @@ use std::path::Path;
 
 use crate::Grid;
 use crate::error::{Result, exact_length, least_length};
-use crate::plot::color_bar::{self, BAR_WIDTH};
-use crate::plot::{BELOW, Canvas, Color, ColorScale, DrawnAxis, Frame, Picture, Quantity, Room, color_scale, drawable};
-
-/// Width of the space to the left and to the right of a map and height of that above it in pixels.
-const LEFT: u32 = 115;
-const RIGHT: u32 = 20;
-const TOP: f64 = 54.0;
-/// Least side of a map in pixels: very long maps are not drawn to scale.
-const MIN_SIDE: u32 = 40;
-
-/// Width of lines over the frame in pixels.
-const MARK_WIDTH: f64 = 9.0;
-
-/// Least height of a colour bar in pixels.
-const MIN_BAR: u32 = 200;
+use crate::plot::color_bar;
+use crate::plot::sizes::SIZES;
+use crate::plot::{Canvas, Color, ColorScale, DrawnAxis, Frame, Picture, Quantity, Room, color_scale, drawable};
 
 /// A field on a grid as colours, by default dark for small values and light for large ones ([`ColorScale`]).
 ///
@@ -157,25 +145,26 @@ impl Map {
         let longest = if maps.len() == 1 { 730.0 } else { 460.0 };
         let size_of = |map: &Map| {
             let longer = map.lengths[0].max(map.lengths[1]);
-            map.lengths.map(|length| ((length / longer * longest).round() as u32).max(MIN_SIDE))
+            map.lengths.map(|length| ((length / longer * longest).round() as u32).max(SIZES.least_map))
         };
-        let tallest = maps.iter().map(|map| size_of(map)[1]).max().unwrap_or(MIN_SIDE);
+        let tallest = maps.iter().map(|map| size_of(map)[1]).max().unwrap_or(SIZES.least_map);
         let draw = |(k, map): (usize, &Map)| {
             let [width, height] = size_of(map);
-            let bar = if !shared || k + 1 == maps.len() { BAR_WIDTH } else { 0 };
-            let side = LEFT + width + RIGHT;
-            let mut canvas = Canvas::new([side + bar, tallest.max(MIN_BAR) + (TOP + BELOW) as u32])?;
+            let bar = if !shared || k + 1 == maps.len() { SIZES.beside_bar } else { 0 };
+            let side = SIZES.map_left + width + SIZES.map_right;
+            let mut canvas =
+                Canvas::new([side + bar, tallest.max(SIZES.least_bar) + (SIZES.map_top + SIZES.below) as u32])?;
             map.draw_on(&mut canvas, [width, height].map(f64::from));
             if bar > 0 {
                 let of = if shared { maps } else { &maps[k..=k] };
                 let [low, high] = extremes(of.iter().flat_map(|map| &map.values));
                 let beyond = [low < map.range[0], high > map.range[1]];
-                let bottom = TOP + f64::from(if shared { tallest } else { height }.max(MIN_BAR));
+                let bottom = SIZES.map_top + f64::from(if shared { tallest } else { height }.max(SIZES.least_bar));
                 let greatest = map.range[0].abs().max(map.range[1].abs());
-                let room = Room { length: bottom - TOP, horizontal: false };
+                let room = Room { length: bottom - SIZES.map_top, horizontal: false };
                 let axis = DrawnAxis::linear(&map.quantity, greatest, map.range, room);
                 let color = |at: f64| map.colors.color(map.range[0] + at * (map.range[1] - map.range[0]), map.range);
-                color_bar::draw(&mut canvas, f64::from(side), [TOP, bottom], &axis, color, beyond);
+                color_bar::draw(&mut canvas, f64::from(side), [SIZES.map_top, bottom], &axis, color, beyond);
             }
             Ok(Picture::new(canvas))
         };
@@ -196,10 +185,10 @@ impl Map {
                 Room { length, horizontal: k == 0 },
             )
         };
-        let left = f64::from(LEFT);
+        let left = f64::from(SIZES.map_left);
         let axes = [axis(0, width), axis(1, height)];
-        let frame = Frame { left, top: TOP, right: left + width, bottom: TOP + height, axes };
-        canvas.cells([left, TOP, left + width, TOP + height], self.cells[0], &self.colors());
+        let frame = Frame { left, top: SIZES.map_top, right: left + width, bottom: SIZES.map_top + height, axes };
+        canvas.cells([left, SIZES.map_top, left + width, SIZES.map_top + height], self.cells[0], &self.colors());
         let placed = |lines: &[[(f64, f64); 2]]| -> Vec<_> {
             lines.iter().map(|ends| ends.map(|(x, y)| frame.at(x, y)).to_vec()).collect()
         };
@@ -208,7 +197,7 @@ impl Map {
         canvas.lines(&outline, 5.0, Color::WHITE);
         canvas.lines(&outline, 2.0, Color::BLACK);
         frame.draw(canvas, &self.title);
-        canvas.lines(&placed(&self.lines), MARK_WIDTH, Color::BLACK);
+        canvas.lines(&placed(&self.lines), SIZES.mark, Color::BLACK);
     }
 
     /// The colours of the cells, top row first.

@@ -59,6 +59,7 @@ mod picture;
 mod quantity;
 #[cfg(feature = "stress")]
 mod section;
+mod sizes;
 #[cfg(feature = "sliding")]
 mod sliding;
 #[cfg(feature = "study")]
@@ -73,7 +74,7 @@ pub use map::Map;
 pub use picture::Picture;
 pub use quantity::{Quantity, measure};
 
-use axis::{DrawnAxis, Room, TICK_SIZE};
+use axis::{DrawnAxis, Room};
 use canvas::{Anchor, Canvas};
-use frame::{BELOW, Frame};
+use frame::Frame;
 use quantity::{color_scale, drawable};
