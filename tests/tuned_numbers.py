@@ -2,10 +2,11 @@
 
     python3 tests/tuned_numbers.py src/states adaptive_runs_on_states_err STATES=40
 
-copies the repository to target/tuned, where each scalar f64 constant of the source is a function that the environment
-variable TUNED="src/states/control.rs:AIM=0.5" multiplies, builds the suite once, and runs one of its tests with every
-number of the files that begin with the first argument halved and doubled. What is printed are the lines of the test
-that differ. docs/maintainers/tuned_numbers.md has the results.
+copies the repository to target/tuned, where each scalar f64 constant of the source is a function, and each number of a
+struct of a mechanism a value, that the environment variable TUNED="src/states/control.rs:STEPS.aim=0.5" multiplies,
+builds the suite once, and runs one of its tests with every number of the files that begin with the first argument
+halved and doubled. What is printed are the lines of the test that differ. docs/maintainers/tuned_numbers.md has the
+results.
 """
 
 import difflib
@@ -19,6 +20,9 @@ import sys
 ROOT = pathlib.Path(__file__).parent.parent
 TO = ROOT / "target" / "tuned"
 CONSTANT = re.compile(r"^([ \t]*)(pub(?:\([^)]*\))?\s+)?const\s+([A-Z][A-Z0-9_]*)\s*:\s*f64\s*=\s*([^;]+);", re.M)
+# numbers of a mechanism: a struct of them alone
+GATHERED = re.compile(r"^(pub(?:\([^)]*\))?\s+)?const\s+([A-Z][A-Z0-9_]*)\s*:\s*([A-Z]\w*)\s*=\s*\3\s*\{([^{}]*)\};", re.M)
+FIELD = re.compile(r"(\w+):\s*(\[[^\]]*\]|[^,\[\]]+)(?:,|$)")
 # what is no expression: uses, comments, characters and texts
 OTHER = re.compile(r"""^[ \t]*(?:pub(?:\([^)]*\))?\s+)?use\s+[^;]+;|//[^\n]*|'(?:[^'\\\n]|\\[^\n])'|r#"(?:[^"]|"(?!#))*"#|"(?:[^"\\]|\\[\s\S])*\"""", re.M)
 CHOICE = """//! Numbers that an environment variable multiplies.
@@ -39,7 +43,7 @@ pub(crate) fn number(name: &str, value: f64) -> f64 {
 
 
 def unchangeable(texts):
-    """Names in constants that are not scalars, and in patterns: a function cannot stand there."""
+    """Names in constants that are not scalars, in patterns and in texts: a function cannot stand there."""
     names = set()
     for text in texts.values():
         for kind, value in re.findall(r"(?:const|static)\s+[A-Z]\w*\s*:\s*([^=;]+(?:;[^=]+)?)=\s*((?:[^;]|;(?=[^\n]*\]))+);", text):
@@ -47,6 +51,7 @@ def unchangeable(texts):
                 names |= set(re.findall(r"\b[A-Z][A-Z0-9_]+\b", value))
         names |= set(re.findall(r"(?:=>|\|)\s*([A-Z][A-Z0-9_]+)\s*=>", text))
         names |= set(re.findall(r"const\s+([A-Z][A-Z0-9_]*)\s*:\s*f64;", text))
+        names |= set(re.findall(r"\{([A-Z][A-Z0-9_]+)[:}]", text))
     return names
 
 
@@ -95,7 +100,29 @@ def with_functions(path, text, own, shown, names):
         body = f"static V: std::sync::LazyLock<f64> = {number}; *V"
         return f"{indent}#[allow(non_snake_case)]\n{indent}{visible or ''}fn {name}() -> f64 {{ {body} }}"
 
-    return CONSTANT.sub(function, text)
+    return CONSTANT.sub(function, with_statics(path, text))
+
+
+def fields(found):
+    """Names and values of the numbers of a struct; none where it holds anything else."""
+    pairs = FIELD.findall(" ".join(found[4].split()))
+    return pairs if all(re.fullmatch(r"[\[\]\d\s.,e*/+()_-]+|.*\bEPSILON\b.*", value.strip()) for _, value in pairs) else []
+
+
+def with_statics(path, text):
+    """A file whose structs of numbers are computed at the first use."""
+
+    def static(found):
+        visible, name, kind, _ = found.groups()
+        number = lambda field, value: f'crate::tuned::number("{path}:{name}.{field}", ({value.strip()}) as f64) as _'
+        each = lambda field, value: "[" + ", ".join(number(field, one) for one in value.strip("[] ").split(",")) + "]"
+        values = [f"{field}: {(each if value.startswith('[') else number)(field, value)}" for field, value in fields(found)]
+        if not values:
+            return found[0]
+        lock = f"std::sync::LazyLock<{kind}>"
+        return f"{visible or ''}static {name}: {lock} = std::sync::LazyLock::new(|| {kind} {{ {', '.join(values)} }});"
+
+    return GATHERED.sub(static, text)
 
 
 def rewrite():
@@ -117,7 +144,8 @@ def rewrite():
     first = lib.rfind("\n\n", 0, first) + 2
     (TO / "src/lib.rs").write_text(lib[:first] + "mod tuned;\n" + lib[first:])
     (TO / "src/tuned.rs").write_text(CHOICE)
-    return [f"{path}:{name}" for path in found for name in sorted(found[path])]
+    gathered = [f"{path}:{found[2]}.{field}" for path, text in texts.items() for found in GATHERED.finditer(text) for field, _ in fields(found)]
+    return [f"{path}:{name}" for path in found for name in sorted(found[path])] + gathered
 
 
 def main():

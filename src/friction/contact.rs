@@ -12,7 +12,7 @@ use crate::friction::history::ShearHistory;
 use crate::friction::kernel::{TangentialKernel, TangentialResponse};
 use crate::friction::limit::FrictionLimit;
 use crate::friction::load::{Component, LARGEST, ShearLoad};
-use crate::friction::newton::{NEGLIGIBLE, Work};
+use crate::friction::newton::{NEWTON, Work};
 use crate::friction::problem::{Cell, Problem, Solution, take_motion};
 use crate::friction::region::extent;
 use crate::friction::report::{FrictionReport, Outcome};
@@ -241,7 +241,7 @@ impl FrictionContact {
         let could = [compliance * side * carried / count.sqrt(), area * carried];
         let arm = self.normal.fields().contact_area().sqrt();
         let now = [size(*motion, arm), size(state.force, arm.recip())];
-        (0..2).for_each(|k| state.largest[k] = state.largest[k].max(now[k]).max(NEGLIGIBLE * could[k]));
+        (0..2).for_each(|k| state.largest[k] = state.largest[k].max(now[k]).max(NEWTON.negligible * could[k]));
         history.commit(free, &[]);
         std::mem::swap(solution, trial);
         let convolution_equivalents = kernel.equivalents(self.normal.grid().cells());

@@ -54,24 +54,39 @@ pub(super) struct Outcome {
     pub(super) is_solved: bool,
 }
 
-/// Corrections of the loads after a Newton step.
-const MOST_CARRIES: usize = 8;
-/// Newton steps before a solve is given up.
-const MOST_STEPS: usize = 40;
-/// From so many Newton steps on every fourth is a step of each cell alone.
-const PATIENCE: usize = 10;
-/// Part of the residual that conjugate gradients leave in a Newton step.
-const FORCING: f64 = 0.1;
-/// Conjugate gradients in a Newton step.
-const MOST_GRADIENTS: usize = 150;
-/// Displacements below this part of what friction could cause are not resolved further.
-pub(super) const NEGLIGIBLE: f64 = 1e-3;
-/// What is left of a residual by rounding.
-const NOTHING: f64 = 1e-12;
-/// Stiffness, over that of a cell, below which there is none.
-const UNRESISTED: f64 = 1e-9;
-/// Part of the tolerance beyond which a cell that would slip backwards sticks.
-const BACKWARDS: f64 = 1e-2;
+/// How the tractions of a step are found.
+pub(super) struct Newton {
+    /// Corrections of the loads after a Newton step.
+    most_carries: usize,
+    /// Newton steps before a solve is given up.
+    most_steps: usize,
+    /// From so many Newton steps on every fourth is a step of each cell alone.
+    patience: usize,
+    /// Part of the residual that conjugate gradients leave in a Newton step.
+    forcing: f64,
+    /// Conjugate gradients in a Newton step.
+    most_gradients: usize,
+    /// Displacements below this part of what friction could cause are not resolved further.
+    pub(super) negligible: f64,
+    /// What is left of a residual by rounding.
+    nothing: f64,
+    /// Stiffness, over that of a cell, below which there is none.
+    unresisted: f64,
+    /// Part of the tolerance beyond which a cell that would slip backwards sticks.
+    backwards: f64,
+}
+
+pub(super) const NEWTON: Newton = Newton {
+    most_carries: 8,
+    most_steps: 40,
+    patience: 10,
+    forcing: 0.1,
+    most_gradients: 150,
+    negligible: 1e-3,
+    nothing: 1e-12,
+    unresisted: 1e-9,
+    backwards: 1e-2,
+};
 
 impl Solution {
     /// Solves the problem from what is there; if that fails without traction, and then by the motion.
@@ -116,12 +131,12 @@ impl Solution {
         // what friction could displace
         let (largest, count) =
             problem.touching().fold((0.0_f64, 0), |(r, count), i| (r.max(problem.bound[i]), count + 1));
-        let least = NEGLIGIBLE * problem.compliance * largest * problem.side * f64::from(count).sqrt();
+        let least = NEWTON.negligible * problem.compliance * largest * problem.side * f64::from(count).sqrt();
         let mut outcome = Outcome::default();
         work.changed = false;
         work.began.fill(false);
         work.modes.are_known = false;
-        for iteration in 0..=MOST_STEPS {
+        for iteration in 0..=NEWTON.most_steps {
             kernel.apply(&self.traction, &mut work.stress);
             if iteration == 0 {
                 self.motion = problem.fitting_motion(self, &work.stress);
@@ -134,18 +149,21 @@ impl Solution {
             let residual = self.judge(problem, work) / scale;
             let is_solved = residual <= tolerance && balance <= tolerance;
             outcome = Outcome { iterations: iteration, residual: residual.max(balance), is_solved };
-            if outcome.is_solved || iteration == MOST_STEPS || !residual.is_finite() || problem.is_cancelled() {
+            if outcome.is_solved || iteration == NEWTON.most_steps || !residual.is_finite() || problem.is_cancelled() {
                 break;
             }
-            if iteration > PATIENCE && iteration % 4 == 0 {
+            if iteration > NEWTON.patience && iteration % 4 == 0 {
                 self.smooth(problem);
                 work.changed = true;
                 continue;
             }
-            self.let_stick(problem, work, BACKWARDS * tolerance * scale);
+            self.let_stick(problem, work, NEWTON.backwards * tolerance * scale);
             // what is beyond reach while the sets change, or would be beyond what is asked, is left
-            let forcing =
-                if work.changed { 2.0 * FORCING } else { FORCING.min(residual.max(0.7 * tolerance / residual)) };
+            let forcing = if work.changed {
+                2.0 * NEWTON.forcing
+            } else {
+                NEWTON.forcing.min(residual.max(0.7 * tolerance / residual))
+            };
             let gaps = if balance <= 0.003 * tolerance { [0.0; 3] } else { gaps };
             if !self.advance(problem, kernel, (gaps, forcing), work) {
                 break;
@@ -184,7 +202,7 @@ impl Solution {
         if !(work.carries && work.modes.are_known) {
             return;
         }
-        for _ in 0..MOST_CARRIES {
+        for _ in 0..NEWTON.most_carries {
             let gaps = problem.gaps(&self.traction);
             if problem.balance(gaps) <= least {
                 break;
@@ -293,7 +311,7 @@ impl Solution {
         let mut size = f64::INFINITY;
         direction.fill(0.0);
         // if the loads leave nothing free, what is left is rounding
-        let most = if first <= NOTHING * whole { 0 } else { MOST_GRADIENTS };
+        let most = if first <= NEWTON.nothing * whole { 0 } else { NEWTON.most_gradients };
         for _ in 0..most {
             kernel.precondition(residual, preconditioned, &self.cells, normals);
             modes.project(preconditioned);
@@ -309,7 +327,7 @@ impl Solution {
                 return false;
             }
             // the mean of a periodic body that sticks to all of another one: on to the circles
-            if resists <= UNRESISTED * problem.compliance * problem.side * inner(direction, direction) {
+            if resists <= NEWTON.unresisted * problem.compliance * problem.side * inner(direction, direction) {
                 add(step, 2.0 * largest(problem.bound) / largest(direction), direction);
                 break;
             }

@@ -14,27 +14,43 @@ use crate::Grid;
 use crate::parallel::Rows;
 use crate::solver::{Freedom, Gram, ModeCoefficients, Modes, RestingPosition, RigidMotion, dot};
 
-/// Sets of cells in contact that are tried.
-const MOST_SETS: usize = 60;
-/// Until the set stands, its residual is brought down to this part of the first one.
-const ROUGHLY: f64 = 3e-2;
-/// A cell joins for no less penetration than so many root mean squares of the residual, or than it may have.
-const CERTAIN: f64 = 3.0;
-/// One of so many cells is many.
-const MANY: usize = 4;
-/// Restarts of the iteration on a set.
-const CYCLES: usize = 3;
-/// The part of the lowest cells that a first set takes.
-const FIRST_PART: f64 = 0.3;
-/// The residual may exceed the tolerance so many times: it was brought down to it before the displacement was
-/// computed anew.
-const BELOW: f64 = 1.5;
-/// A negative pressure of this part of the largest is rounding.
-const ROUNDING: f64 = 1e-9;
-/// The least range of the gap in contact, over the range of the whole gap, or of the displacement.
-const FLAT: f64 = 1e-4;
-/// No residual is brought below this part of the maximum displacement that the pressure could have.
-const LEAST: f64 = 4.0 * f64::EPSILON;
+/// How the set of cells in contact is found.
+struct Search {
+    /// Sets of cells in contact that are tried.
+    most_sets: usize,
+    /// Until the set stands, its residual is brought down to this part of the first one.
+    roughly: f64,
+    /// A cell joins for no less penetration than so many root mean squares of the residual, or than it may have.
+    certain: f64,
+    /// One of so many cells is many.
+    many: usize,
+    /// Restarts of the iteration on a set.
+    cycles: usize,
+    /// The part of the lowest cells that a first set takes.
+    first_part: f64,
+    /// The residual may exceed the tolerance so many times: it was brought down to it before the displacement was
+    /// computed anew.
+    below: f64,
+    /// A negative pressure of this part of the largest is rounding.
+    rounding: f64,
+    /// The least range of the gap in contact, over the range of the whole gap, or of the displacement.
+    flat: f64,
+    /// No residual is brought below this part of the maximum displacement that the pressure could have.
+    least: f64,
+}
+
+const SEARCH: Search = Search {
+    most_sets: 60,
+    roughly: 3e-2,
+    certain: 3.0,
+    many: 4,
+    cycles: 3,
+    first_part: 0.3,
+    below: 1.5,
+    rounding: 1e-9,
+    flat: 1e-4,
+    least: 4.0 * f64::EPSILON,
+};
 
 /// Gap and load.
 #[derive(Clone, Copy)]
@@ -186,7 +202,7 @@ impl SlidingProblem<'_> {
         let modes = Modes::new(self.grid, &rows, Freedom { translation: true, ..self.free });
         let cells = (0..self.gap.len()).filter(|&k| self.gap[k].is_finite());
         let RestingPosition { motion, supports } = RestingPosition::new(&rows, &modes, self.gap, cells);
-        let pressed = supports.into_iter().flatten().filter(|(_, share)| *share > ROUNDING);
+        let pressed = supports.into_iter().flatten().filter(|(_, share)| *share > SEARCH.rounding);
         let (height, lowered) = (motion.0[0], modes.physical(motion));
         let tilt = RigidMotion { approach: lowered.approach - height, tilt: lowered.tilt };
         Support { cells: pressed.map(|(k, _)| k).collect(), height, tilt }
@@ -202,7 +218,7 @@ impl SlidingProblem<'_> {
     /// either. The search for a support may have been given up: what it found is no proof.
     fn apart(&self, Support { height, tilt, .. }: &Support) -> Option<RigidMotion> {
         let most = self.gap.iter().filter(|h| h.is_finite()).fold(0.0, |most: f64, h| most.max(h.abs()));
-        let clears = self.moved(*tilt).all(|h| h >= -ROUNDING * most);
+        let clears = self.moved(*tilt).all(|h| h >= -SEARCH.rounding * most);
         let is_apart = !self.free.translation && *height >= 0.0 && clears;
         let is_upright = self.gap.iter().all(|h| *h >= 0.0);
         is_apart.then(|| if is_upright { RigidMotion::default() } else { *tilt })
@@ -223,7 +239,7 @@ impl SlidingProblem<'_> {
         let compliance = bodies.greatest_compliance();
         let mut found = FoundMotion { pressure: guess.to_vec(), ..FoundMotion::default() };
         let (mut tried, mut stands) = (HashSet::new(), false);
-        while found.sets < MOST_SETS && !self.is_cancelled() {
+        while found.sets < SEARCH.most_sets && !self.is_cancelled() {
             found.sets += 1;
             if !pressed.contains(&true) {
                 let support = self.support();
@@ -234,17 +250,17 @@ impl SlidingProblem<'_> {
             }
             let (balance, mut p) = self.balance(&mut pressed, &found.pressure);
             found.displacement = bodies.displacement(&balance.field(&p, cells));
-            let least = LEAST * compliance * p.iter().fold(0.0_f64, |most, p| most.max(p.abs()));
+            let least = SEARCH.least * compliance * p.iter().fold(0.0_f64, |most, p| most.max(p.abs()));
             let unit = self.unit(&balance, &found.displacement, least);
             let allowed = (tolerance * unit).max(least);
-            let part = if stands { 0.0 } else { ROUGHLY };
+            let part = if stands { 0.0 } else { SEARCH.roughly };
             let residual = self.solve_on(&balance, allowed, part, bodies, &mut p, &mut found);
             let left = balance.rms(&residual);
             let over_unit = |length: f64| if length > 0.0 { length / unit } else { 0.0 };
             (found.residual, found.rounding) = (over_unit(left), over_unit(least));
-            let mut changes = self.changes(&balance, &p, &found, &pressed, CERTAIN * allowed.max(left));
+            let mut changes = self.changes(&balance, &p, &found, &pressed, SEARCH.certain * allowed.max(left));
             // until the set stands, cells in doubt leave only if no other joins, or if many do: else they come back
-            if !stands && !changes.join.is_empty() && changes.leave.len() < p.len() / MANY {
+            if !stands && !changes.join.is_empty() && changes.leave.len() < p.len() / SEARCH.many {
                 let doubt = balance.rms(&balance.of(&bodies.pressure(&balance.field(&residual, cells))));
                 changes.leave.retain(|(p, _)| *p < -doubt);
             }
@@ -252,7 +268,7 @@ impl SlidingProblem<'_> {
             found.pressure = balance.field(&p, cells);
             if changes.leave.is_empty() && changes.join.is_empty() {
                 let balanced = || balance.holds(&balance.of(&found.pressure), free.total, tolerance);
-                found.converged = left <= BELOW * tolerance * unit && (!free.moves() || balanced());
+                found.converged = left <= SEARCH.below * tolerance * unit && (!free.moves() || balanced());
                 if found.converged || stands {
                     break;
                 }
@@ -298,7 +314,7 @@ impl SlidingProblem<'_> {
         let n2 = self.grid.cells()[1];
         let height = |k: usize| found.displacement[k] + self.gap[k] - found.motion.at(self.grid.center(k / n2, k % n2));
         let most = p.iter().fold(0.0_f64, |most, p| most.max(p.abs()));
-        let pulls = p.iter().zip(&balance.set).map(|(p, k)| (*p, *k)).filter(|(p, _)| *p < -ROUNDING * most);
+        let pulls = p.iter().zip(&balance.set).map(|(p, k)| (*p, *k)).filter(|(p, _)| *p < -SEARCH.rounding * most);
         let outside = (0..pressed.len()).filter(|&k| !pressed[k]).map(|k| (height(k), k));
         Changes { leave: pulls.collect(), join: outside.filter(|(h, _)| *h < -certain).collect() }
     }
@@ -326,7 +342,7 @@ impl SlidingProblem<'_> {
             if cycle == 1 {
                 goal = (allowed * (pressure.len() as f64).sqrt()).max(part * left);
             }
-            if left <= goal || cycle == CYCLES || self.is_cancelled() {
+            if left <= goal || cycle == SEARCH.cycles || self.is_cancelled() {
                 return residual;
             }
             gmres(pressure, residual, goal, |direction| {
@@ -348,7 +364,11 @@ impl SlidingProblem<'_> {
         balance.bring(&mut heights, [0.0; 3]);
         let [low, high] = range(self.gap);
         let [lowest, most] = range(displacement);
-        let own = balance.rms(&heights).max(FLAT * (high - low)).max(ROUNDING * high.abs()).max(FLAT * (most - lowest));
+        let own = balance
+            .rms(&heights)
+            .max(SEARCH.flat * (high - low))
+            .max(SEARCH.rounding * high.abs())
+            .max(SEARCH.flat * (most - lowest));
         // a face without any gap closes without displacement where it fills a period
         if high > low { own } else { own.max(least / self.tolerance) }
     }
@@ -360,7 +380,7 @@ impl SlidingProblem<'_> {
         let gap: Vec<f64> = self.moved(tilt).collect();
         let mut heights: Vec<f64> = gap.iter().copied().filter(|h| h.is_finite()).collect();
         let level = if self.free.translation {
-            let place = ((FIRST_PART * heights.len() as f64) as usize).min(heights.len() - 1);
+            let place = ((SEARCH.first_part * heights.len() as f64) as usize).min(heights.len() - 1);
             *heights.select_nth_unstable_by(place, f64::total_cmp).1
         } else {
             0.0

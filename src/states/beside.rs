@@ -20,17 +20,30 @@ use crate::states::reach::{Loading, MARGIN, greatest, sampled, states_of};
 use crate::states::repeated::{GradedRun, StateAt};
 use crate::states::solved_curve::SolvedCurve;
 
-/// Levels of the first elastic contacts, from the greatest of the run: so many, each over the next.
-const FIRST_LEVELS: i32 = 5;
-const RATIO: f64 = 8.0;
-/// Parts of the accuracy that the solver of an elastic body may leave, steps and the curve may, and the change of the
-/// level by the contacts of a field; the rest is for its levels.
-const OF_SOLVER: f64 = 1e-2;
-const OF_RUN: f64 = 0.3;
-const OF_CHANGE: f64 = 0.15;
-/// Greatest number of contacts that are added to the curve for a field, and times that the field is found anew.
-const MOST_ADDED: usize = 64;
-const MOST_ATTEMPTS: u32 = 12;
+/// How levels are found for the fields of a run in cells.
+struct Beside {
+    /// Levels of the first elastic contacts, from the greatest of the run: so many, each over the next.
+    first_levels: i32,
+    ratio: f64,
+    /// Parts of the accuracy that the solver of an elastic body may leave, steps and the curve may, and the change of
+    /// the level by the contacts of a field; the rest is for its levels.
+    of_solver: f64,
+    of_run: f64,
+    of_change: f64,
+    /// Greatest number of contacts that are added to the curve for a field, and times that the field is found anew.
+    most_added: usize,
+    most_attempts: u32,
+}
+
+const BESIDE: Beside = Beside {
+    first_levels: 5,
+    ratio: 8.0,
+    of_solver: 1e-2,
+    of_run: 0.3,
+    of_change: 0.15,
+    most_added: 64,
+    most_attempts: 12,
+};
 
 impl ViscoelasticContact {
     /// An elastic contact of this compliance with the same rigid bodies, solved to `tolerance` on the whole grid, but
@@ -84,7 +97,7 @@ impl FieldsByLevels {
         }
         // errors of two contacts count in their difference as many times as the bodies creep
         let creep = course.softest_compliance()? / course.material.contact_compliance(0.0);
-        let tolerance = (OF_SOLVER * accuracy / creep.max(1.0)).max(1e-9);
+        let tolerance = (BESIDE.of_solver * accuracy / creep.max(1.0)).max(1e-9);
         let mut elastic = contact.elastic(1.0, tolerance)?;
         elastic.solve(Load::Force { normal: 0.0, tilt })?;
         let rest = elastic.fields().approach();
@@ -103,8 +116,8 @@ impl FieldsByLevels {
         }
         let mut curve = SolvedCurve::new(Contacts::new(elastic, tilt, tolerance), by_force, rest);
         let mut below: Option<SolvedContact> = None;
-        for k in (0..FIRST_LEVELS).rev() {
-            let next = curve.contacts.solve(top * RATIO.powi(-k))?;
+        for k in (0..BESIDE.first_levels).rev() {
+            let next = curve.contacts.solve(top * BESIDE.ratio.powi(-k))?;
             below.iter().try_for_each(|below| curve.contacts.check(below, &next))?;
             curve.add(&next);
             below = Some(next);
@@ -122,7 +135,7 @@ impl FieldsByLevels {
         at: (f64, bool),
         most_added: &mut usize,
     ) -> Result<(StateAt, f64)> {
-        let allowed = 0.5 * OF_RUN * self.repeated.accuracy;
+        let allowed = 0.5 * BESIDE.of_run * self.repeated.accuracy;
         loop {
             let (mut found, of_steps) = self.repeated.in_short_steps(history, at, allowed)?;
             if self.curve.by_force {
@@ -150,12 +163,12 @@ impl FieldsByLevels {
         let accuracy = self.repeated.accuracy;
         // a field does not depend on the ones before
         self.curve.contacts.forget();
-        let mut most_added = MOST_ADDED;
+        let mut most_added = BESIDE.most_added;
         for attempt in 1.. {
             let (mut found, mut left) = self.settled(history, (time, after), &mut most_added)?;
             let (profile, size) = (found.profile(), found.size());
-            let of_change = if self.curve.by_force { 0.0 } else { OF_CHANGE };
-            let rest = (1.0 - OF_SOLVER - of_change).mul_add(accuracy, -left).max(0.5 * accuracy);
+            let of_change = if self.curve.by_force { 0.0 } else { BESIDE.of_change };
+            let rest = (1.0 - BESIDE.of_solver - of_change).mul_add(accuracy, -left).max(0.5 * accuracy);
             let superposition = self.curve.contacts.superpose(&[(&profile, size)], rest)?;
             let mut is_settled = true;
             if !self.curve.by_force {
@@ -163,11 +176,11 @@ impl FieldsByLevels {
                 superposition.solved.iter().for_each(|solved| self.curve.add(solved));
                 self.repeated = self.repeated.on(self.curve.through(1, 0)?);
                 let change = found.distance(&mut self.repeated.at(history, time, after)?)?;
-                is_settled = change <= OF_CHANGE * accuracy || attempt == MOST_ATTEMPTS;
+                is_settled = change <= BESIDE.of_change * accuracy || attempt == BESIDE.most_attempts;
                 left += change;
             }
             if is_settled {
-                left += if superposition.solved.is_empty() { 0.0 } else { OF_SOLVER * accuracy };
+                left += if superposition.solved.is_empty() { 0.0 } else { BESIDE.of_solver * accuracy };
                 let [pressure] = superposition.fields.try_into().expect("one profile");
                 let (error, spent) = (superposition.error + left, std::mem::take(&mut self.curve.contacts.spent));
                 return Ok(FoundPressure { pressure, error, spent });

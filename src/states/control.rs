@@ -18,21 +18,35 @@ use crate::run::trace::PARTS_OF_RUN;
 use crate::states::contact::StatesContact;
 use crate::states::levels::Demand;
 
-/// Share of the tolerance that the error of a step aims at: errors of several steps add up, and over taps.
-const AIM: f64 = 0.08;
-const AIM_OF_FORCE: f64 = 0.1;
-/// Further part of the aim for bodies without elastic response: nothing brings their level back.
-const AIM_OF_RATES: f64 = 0.2;
-/// Two halves err by a third of their difference to the whole, as where the order is two: the curve between states
-/// has kinks in its curvature.
-const OF_HALVES: f64 = 1.0 / 3.0;
-/// Levels that were swept in a step are resolved by its length alone: their error does not add up over the steps, but
-/// over the taps that come back to them, and counts so much, chosen on 300 random runs that tap and part; less where
-/// forces are given throughout.
-const SWEPT: f64 = 0.2;
-const SWEPT_BY_FORCE: f64 = 0.05;
-/// What hardly counts, in tolerances: the overshoot of a step that ends where bodies touch, and the merging of levels.
-const SLIGHT: f64 = 0.01;
+/// How steps are judged: docs/maintainers/tuned_numbers.md has half and twice of each.
+struct Steps {
+    /// Share of the tolerance that the error of a step aims at: errors of several steps add up, and over taps.
+    aim: f64,
+    aim_of_force: f64,
+    /// Further part of the aim for bodies without elastic response: nothing brings their level back.
+    aim_of_rates: f64,
+    /// Two halves err by a third of their difference to the whole, as where the order is two: the curve between states
+    /// has kinks in its curvature.
+    of_halves: f64,
+    /// Levels that were swept in a step are resolved by its length alone: their error does not add up over the steps,
+    /// but over the taps that come back to them, and counts so much, chosen on 300 random runs that tap and part; less
+    /// where forces are given throughout.
+    swept: f64,
+    swept_by_force: f64,
+    /// What hardly counts, in tolerances: the overshoot of a step that ends where bodies touch, and the merging of
+    /// levels.
+    slight: f64,
+}
+
+const STEPS: Steps = Steps {
+    aim: 0.08,
+    aim_of_force: 0.1,
+    aim_of_rates: 0.2,
+    of_halves: 1.0 / 3.0,
+    swept: 0.2,
+    swept_by_force: 0.05,
+    slight: 0.01,
+};
 
 /// What the loads of a run make of elastic states.
 #[derive(Debug, Clone, Default)]
@@ -98,7 +112,7 @@ impl Judge<StatesContact> for OnLevels {
     }
 
     fn accept(record: &Record<OnLevels>, contact: &mut StatesContact) {
-        contact.levels.merge(&contact.states, SLIGHT * record.tolerance);
+        contact.levels.merge(&contact.states, STEPS.slight * record.tolerance);
     }
 
     fn turn(contact: &mut StatesContact) {
@@ -112,8 +126,8 @@ impl Judge<StatesContact> for OnLevels {
     }
 
     fn aim(record: &Record<OnLevels>, contact: &StatesContact, _: Span) -> f64 {
-        let of_load = if record.by_force { AIM_OF_FORCE } else { AIM };
-        let of_body = if contact.levels.has_dashpot() { AIM_OF_RATES } else { 1.0 };
+        let of_load = if record.by_force { STEPS.aim_of_force } else { STEPS.aim };
+        let of_body = if contact.levels.has_dashpot() { STEPS.aim_of_rates } else { 1.0 };
         of_body * of_load * record.tolerance
     }
 
@@ -135,7 +149,12 @@ impl Judge<StatesContact> for OnLevels {
         }
         scratch.copy_from(contact);
         let scale = record.greatest[0].max(1e-3 * record.greatest_load);
-        passage.first_event(touch, SLIGHT * record.tolerance * scale, &mut |time| scratch.surface_at(time), &mut load)
+        passage.first_event(
+            touch,
+            STEPS.slight * record.tolerance * scale,
+            &mut |time| scratch.surface_at(time),
+            &mut load,
+        )
     }
 
     /// How far the whole differs from the halves, in depth and force, relative to values that are not small in this
@@ -156,7 +175,7 @@ impl Judge<StatesContact> for OnLevels {
             contact.level(),
             cuts,
             (end - record.corner) / half,
-            if record.by_force { SWEPT_BY_FORCE } else { SWEPT },
+            if record.by_force { STEPS.swept_by_force } else { STEPS.swept },
         );
         if record.by_force {
             of_surface[1] = 0.0;
@@ -199,7 +218,7 @@ impl Judge<StatesContact> for OnLevels {
             let released = held.shear.as_ref().map_or(0.0, |held| shear.lost - held.lost);
             let in_doubt = if halves.level() > 0.0 { 0.0 } else { released };
             see(
-                [(off[3] + in_doubt) / OF_HALVES, 0.0],
+                [(off[3] + in_doubt) / STEPS.of_halves, 0.0],
                 [shear.lost.max(done.max(far * most / SMALL) * along * pressed), 0.0],
             );
             see([off[4], 0.0], [f64::max(done, far * most) / SMALL * along * pressed, 0.0]);
@@ -207,9 +226,9 @@ impl Judge<StatesContact> for OnLevels {
             let time = end - record.corner;
             let lasting = |demand| halves.levels.lasting(&halves.states, demand, time / half);
             let lasting = contact.along(end, end - now, None)?.map_or(0.0, lasting);
-            let steps = AIM * lasting * (time / (end - now)).min(f64::from(PARTS_OF_RUN));
+            let steps = STEPS.aim * lasting * (time / (end - now)).min(f64::from(PARTS_OF_RUN));
             see([steps * off[1], 0.0], scales);
-            halves.levels.extrapolate_losses([contact, &*whole].map(|contact| &contact.levels), OF_HALVES);
+            halves.levels.extrapolate_losses([contact, &*whole].map(|contact| &contact.levels), STEPS.of_halves);
         }
         // what steps like this one add since the last corner, and nothing brings back, may be as large as the
         // tolerance: to the depth under a spring, and to the surface of bodies apart that resist rates alone
@@ -219,10 +238,10 @@ impl Judge<StatesContact> for OnLevels {
         if acts && by_spring || !acts && halves.levels.has_dashpot() {
             let time = time.min(end - record.corner);
             let steps = (time / (end - now)).min(f64::from(PARTS_OF_RUN));
-            see([AIM * halves.levels.lasting(&halves.states, demand, time / half) * steps * off, 0.0], greatest);
+            see([STEPS.aim * halves.levels.lasting(&halves.states, demand, time / half) * steps * off, 0.0], greatest);
         }
         let parts = report.force == 0.0 && contact.level() > 0.0;
-        Ok(if record.next == 0.0 || record.touches || parts { WITHOUT_ORDER } else { OF_HALVES } * worst)
+        Ok(if record.next == 0.0 || record.touches || parts { WITHOUT_ORDER } else { STEPS.of_halves } * worst)
     }
 
     /// Depths without contact are no scale.

@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 use crate::fields::{Fields, KeptFields};
 use crate::hereditary::{Interpolant, StepContext};
 use crate::load::{Load, LoadHistory};
-use crate::states::repeated::LEAST_FORCE;
+use crate::states::repeated::REPEATED;
 
 /// Times that steps are halved.
 const MOST_HALVINGS: usize = 4;
@@ -92,7 +92,7 @@ impl Refined {
     fn error(&self, contact: &ViscoelasticContact, longer: &ViscoelasticContact) -> Option<f64> {
         let [off, sum] = contact.fields().pressure_beside(longer.fields());
         let [off, sum] = [off, sum].map(|sum| sum * contact.grid().cell_area());
-        let size = sum.max(LEAST_FORCE * self.force);
+        let size = sum.max(REPEATED.least_force * self.force);
         (size > 0.0).then(|| off / size)
     }
 

@@ -9,23 +9,38 @@ use crate::states::contact::StatesContact;
 use crate::states::curve::ElasticStates;
 use crate::states::profile::Profile;
 
-/// Tolerance of the steps that show how long steps of a run may be, and the parts of each at first.
-const COARSE: f64 = 1e-3;
-const FIRST_PARTS: u32 = 2;
-/// Greatest number of steps that are halved.
-const MOST_HALVED: usize = 8000;
-/// Steps twice as long err by so many times more, the order being 2.
-const OF_LONGER: f64 = 3.0;
-/// Times that steps are halved where it is not known whether bodies touch.
-const MOST_UNKNOWN: u32 = 2;
-/// Parts of the levels whose mean tractions are compared.
-const PARTS_COMPARED: usize = 16;
-/// The shortest step, over the time since the start.
-const SHORTEST: f64 = 1e-7;
-/// The last step before a time, over the time since the start.
-const LAST_STEP: f64 = 1e-5;
-/// The accuracy of a field holds relative to this part of the greatest force at least.
-pub(super) const LEAST_FORCE: f64 = 0.01;
+/// How the steps of a run are repeated on levels.
+pub(super) struct Repetition {
+    /// Tolerance of the steps that show how long steps of a run may be, and the parts of each at first.
+    coarse: f64,
+    first_parts: u32,
+    /// Greatest number of steps that are halved.
+    most_halved: usize,
+    /// Steps twice as long err by so many times more, the order being 2.
+    of_longer: f64,
+    /// Times that steps are halved where it is not known whether bodies touch.
+    most_unknown: u32,
+    /// Parts of the levels whose mean tractions are compared.
+    parts_compared: usize,
+    /// The shortest step, over the time since the start.
+    shortest: f64,
+    /// The last step before a time, over the time since the start.
+    last_step: f64,
+    /// The accuracy of a field holds relative to this part of the greatest force at least.
+    pub(super) least_force: f64,
+}
+
+pub(super) const REPEATED: Repetition = Repetition {
+    coarse: 1e-3,
+    first_parts: 2,
+    most_halved: 8000,
+    of_longer: 3.0,
+    most_unknown: 2,
+    parts_compared: 16,
+    shortest: 1e-7,
+    last_step: 1e-5,
+    least_force: 0.01,
+};
 
 /// Repeats a run on levels.
 #[derive(Debug, Clone)]
@@ -61,7 +76,7 @@ impl GradedRun {
     ) -> Result<(GradedRun, f64)> {
         let (mut contact, mut ends, mut greatest) = (origin.clone(), vec![origin.time()], 0.0_f64);
         let (mut force, mut forces) = (0.0_f64, Vec::new());
-        let mut run = contact.follow(history, Stepping::adaptive(COARSE), until);
+        let mut run = contact.follow(history, Stepping::adaptive(REPEATED.coarse), until);
         while let Some(report) = run.next_step()? {
             greatest = greatest.max(run.contact().level());
             ends.push(report.time);
@@ -69,8 +84,10 @@ impl GradedRun {
             forces.push((report.time, force));
         }
         drop(run);
-        let part = |pair: &[f64], k: u32| pair[0] + (pair[1] - pair[0]) * f64::from(k) / f64::from(FIRST_PARTS);
-        let within = |pair: &[f64]| (1..FIRST_PARTS).map(|k| part(pair, k)).chain([pair[1]]).collect::<Vec<_>>();
+        let part =
+            |pair: &[f64], k: u32| pair[0] + (pair[1] - pair[0]) * f64::from(k) / f64::from(REPEATED.first_parts);
+        let within =
+            |pair: &[f64]| (1..REPEATED.first_parts).map(|k| part(pair, k)).chain([pair[1]]).collect::<Vec<_>>();
         let schedule = ends.windows(2).filter(|pair| pair[1] > pair[0]).flat_map(within).collect();
         let (forces, shortening) = (forces.into(), accuracy.sqrt());
         Ok((GradedRun { origin, accuracy, schedule, forces, shortening, by_force }, greatest))
@@ -90,9 +107,9 @@ impl GradedRun {
     ) -> Result<(StateAt, f64)> {
         for attempt in 1.. {
             let mut found = self.at(history, at.0, at.1)?;
-            let error = found.distance(&mut self.by_longer_steps(history, at)?)? / OF_LONGER;
+            let error = found.distance(&mut self.by_longer_steps(history, at)?)? / REPEATED.of_longer;
             // bodies that just touch stay apart by nothing in steps of any length
-            let is_unknown = error.is_infinite() && attempt > MOST_UNKNOWN;
+            let is_unknown = error.is_infinite() && attempt > REPEATED.most_unknown;
             if error <= allowed || is_unknown || !self.halve() {
                 return Ok((found, error));
             }
@@ -103,7 +120,7 @@ impl GradedRun {
     /// Halves its steps; false where they are too many already.
     fn halve(&mut self) -> bool {
         // the ends graded towards a time are about as many as steps of its shortening
-        if self.schedule.len() > MOST_HALVED || self.shortening * (MOST_HALVED as f64) < 1.0 {
+        if self.schedule.len() > REPEATED.most_halved || self.shortening * (REPEATED.most_halved as f64) < 1.0 {
             return false;
         }
         let start = self.origin.time();
@@ -117,7 +134,7 @@ impl GradedRun {
     /// Ends of its steps to a time.
     fn ends(&self, time: f64) -> Vec<f64> {
         let (mut ends, mut left) = (self.schedule.to_vec(), 1.0);
-        while left > LAST_STEP {
+        while left > REPEATED.last_step {
             left *= 1.0 - self.shortening;
             ends.push(time - (time - self.origin.time()) * left);
         }
@@ -157,7 +174,7 @@ impl GradedRun {
             }
         };
         jump(&mut contact, start)?;
-        let shortest = SHORTEST * (time - start);
+        let shortest = REPEATED.shortest * (time - start);
         let inner = ends.iter().copied().filter(|end| *end > start && *end < time - shortest);
         for end in inner.chain((time > start).then_some(time)) {
             let now = contact.time();
@@ -182,7 +199,7 @@ impl GradedRun {
 
 impl StateAt {
     pub(super) fn size(&self) -> f64 {
-        self.contact.force().max(LEAST_FORCE * self.force)
+        self.contact.force().max(REPEATED.least_force * self.force)
     }
 
     pub(super) fn profile(&self) -> Profile {
@@ -203,7 +220,7 @@ impl StateAt {
             return Ok(if (own - other).abs() < own { 0.0 } else { f64::INFINITY });
         }
         let (own, size) = (self.profile(), self.size());
-        let off = own.distance(&other.profile(), &own.cuts(PARTS_COMPARED));
+        let off = own.distance(&other.profile(), &own.cuts(REPEATED.parts_compared));
         // where nothing has pressed yet, one of them may have touched
         Ok(if off == 0.0 { 0.0 } else { off / size })
     }

@@ -36,16 +36,21 @@ pub struct Sweep {
     keep_pressures: bool,
 }
 
-/// The smallest level of a sweep over the greatest.
-const LEAST_LEVEL: f64 = 1e-12;
-/// The level, over the greatest, below which a contact that stays the same is the smallest.
-const LINEAR_LEVEL: f64 = 1e-6;
-/// Levels closer than by this factor have no state between them.
-const FINEST: f64 = 1.001;
-/// The error of a pressure counts relative to this part of the maximum load at least.
-const LEAST_LOAD: f64 = 0.01;
-/// The error in the middle of two states is so much below the accuracy: elsewhere between them it may be greater.
-const SAFETY: f64 = 2.0;
+/// How close the states of a sweep are.
+struct Density {
+    /// The smallest level of a sweep over the greatest.
+    least_level: f64,
+    /// The level, over the greatest, below which a contact that stays the same is the smallest.
+    linear_level: f64,
+    /// Levels closer than by this factor have no state between them.
+    finest: f64,
+    /// The error of a pressure counts relative to this part of the maximum load at least.
+    least_load: f64,
+    /// The error in the middle of two states is so much below the accuracy: elsewhere between them it may be greater.
+    safety: f64,
+}
+
+const SWEEP: Density = Density { least_level: 1e-12, linear_level: 1e-6, finest: 1.001, least_load: 0.01, safety: 2.0 };
 
 impl Sweep {
     /// A shape pressed upright onto an incompressible half-space.
@@ -268,8 +273,8 @@ impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> SweepSolver<'_, P> {
         let (mut is_linear, free) =
             (false, self.asked.tilt.iter().filter(|tilt| matches!(tilt, Tilt::Free { .. })).count());
         while let Some(Solved { state, pressure }) = states.last().map(Rc::as_ref) {
-            let is_smallest = is_linear && (state.cells <= 1 + free || state.level < LINEAR_LEVEL * last);
-            if is_smallest || state.level < LEAST_LEVEL * last {
+            let is_smallest = is_linear && (state.cells <= 1 + free || state.level < SWEEP.linear_level * last);
+            if is_smallest || state.level < SWEEP.least_level * last {
                 break;
             }
             let next = self.solve(0.5 * state.level)?;
@@ -309,7 +314,7 @@ impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> SweepSolver<'_, P> {
         if self.kept.is_some() {
             error = error.max(self.error_of_pressure([&lower, &middle, &upper]));
         }
-        if SAFETY * error <= self.asked.accuracy || upper.state.level < FINEST * lower.state.level {
+        if SWEEP.safety * error <= self.asked.accuracy || upper.state.level < SWEEP.finest * lower.state.level {
             self.check_growth(&lower, &middle)?;
             self.check_growth(&middle, &upper)?;
             self.error = self.error.max(error);
@@ -330,7 +335,7 @@ impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> SweepSolver<'_, P> {
             solved.pressure.add_to(share, &mut off);
         }
         let sum: f64 = off.iter().map(|off| off.abs()).sum();
-        sum * grid.cell_area() / level.max(LEAST_LOAD * self.last_level)
+        sum * grid.cell_area() / level.max(SWEEP.least_load * self.last_level)
     }
 
     /// Nowhere may the pressure fall while the load grows.
