@@ -22,8 +22,6 @@ struct Search {
     roughly: f64,
     /// A cell joins for no less penetration than so many root mean squares of the residual, or than it may have.
     certain: f64,
-    /// One of so many cells is many.
-    many: usize,
     /// Restarts of the iteration on a set.
     cycles: usize,
     /// The part of the lowest cells that a first set takes.
@@ -43,7 +41,6 @@ const SEARCH: Search = Search {
     most_sets: 60,
     roughly: 3e-2,
     certain: 3.0,
-    many: 4,
     cycles: 3,
     first_part: 0.3,
     below: 1.5,
@@ -259,11 +256,6 @@ impl SlidingProblem<'_> {
             let over_unit = |length: f64| if length > 0.0 { length / unit } else { 0.0 };
             (found.residual, found.rounding) = (over_unit(left), over_unit(least));
             let mut changes = self.changes(&balance, &p, &found, &pressed, SEARCH.certain * allowed.max(left));
-            // until the set stands, cells in doubt leave only if no other joins, or if many do: else they come back
-            if !stands && !changes.join.is_empty() && changes.leave.len() < p.len() / SEARCH.many {
-                let doubt = balance.rms(&balance.of(&bodies.pressure(&balance.field(&residual, cells))));
-                changes.leave.retain(|(p, _)| *p < -doubt);
-            }
             p.iter_mut().for_each(|p| *p = p.max(0.0));
             found.pressure = balance.field(&p, cells);
             if changes.leave.is_empty() && changes.join.is_empty() {

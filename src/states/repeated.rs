@@ -11,9 +11,8 @@ use crate::states::profile::Profile;
 
 /// How the steps of a run are repeated on levels.
 pub(super) struct Repetition {
-    /// Tolerance of the steps that show how long steps of a run may be, and the parts of each at first.
+    /// Tolerance of the steps that show how long steps of a run may be.
     coarse: f64,
-    first_parts: u32,
     /// Greatest number of steps that are halved.
     most_halved: usize,
     /// Steps twice as long err by so many times more, the order being 2.
@@ -32,7 +31,6 @@ pub(super) struct Repetition {
 
 pub(super) const REPEATED: Repetition = Repetition {
     coarse: 1e-3,
-    first_parts: 2,
     most_halved: 8000,
     of_longer: 3.0,
     most_unknown: 2,
@@ -84,11 +82,7 @@ impl GradedRun {
             forces.push((report.time, force));
         }
         drop(run);
-        let part =
-            |pair: &[f64], k: u32| pair[0] + (pair[1] - pair[0]) * f64::from(k) / f64::from(REPEATED.first_parts);
-        let within =
-            |pair: &[f64]| (1..REPEATED.first_parts).map(|k| part(pair, k)).chain([pair[1]]).collect::<Vec<_>>();
-        let schedule = ends.windows(2).filter(|pair| pair[1] > pair[0]).flat_map(within).collect();
+        let schedule = ends.windows(2).filter(|pair| pair[1] > pair[0]).map(|pair| pair[1]).collect();
         let (forces, shortening) = (forces.into(), accuracy.sqrt());
         Ok((GradedRun { origin, accuracy, schedule, forces, shortening, by_force }, greatest))
     }
