@@ -11,8 +11,8 @@ fn gaps(attraction: &dyn Attraction) -> impl Iterator<Item = f64> {
     std::iter::once(0.0).chain((0..=360).map(move |k| 1e-3 * range * 10f64.powf(f64::from(k) / 40.0)))
 }
 
-/// The integral over an interval, which is halved where two halves differ from the whole: twice at least, since a corner
-/// of the law may leave the halves as the whole, and around a corner 24 times at most.
+/// The integral over an interval, which is halved where two halves differ from the whole: twice at least, since a
+/// corner of the law may leave the halves as the whole, and around a corner 24 times at most.
 fn integrate(
     rule: &GaussLegendre,
     [from, to]: [f64; 2],

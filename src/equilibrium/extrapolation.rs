@@ -6,11 +6,11 @@ pub(crate) const MAX_REACH: f64 = 2.0;
 /// The length of the step to extrapolate from, and when K p was last computed afresh.
 ///
 /// The first guess of a step extrapolates p and K p alike, which saves a convolution but lets the rounding of K p
-/// accumulate, step by step linearly. After 62 steps K p is computed afresh, in two successive steps: extrapolation reads
-/// two states, and one left stale would feed its error back, multiplied. This costs a thirty-second of a convolution per
-/// step. K p is computed afresh, too, when the force has fallen by a factor of 8, since the rounding came from the larger
-/// force, and when steps that grow have multiplied the rounding by 1000: a guess that reaches a times the last step ahead
-/// multiplies the difference of the errors of the last two states by a.
+/// accumulate, step by step linearly. After 62 steps K p is computed afresh, in two successive steps: extrapolation
+/// reads two states, and one left stale would feed its error back, multiplied. This costs a thirty-second of a
+/// convolution per step. K p is computed afresh, too, when the force has fallen by a factor of 8, since the rounding
+/// came from the larger force, and when steps that grow have multiplied the rounding by 1000: a guess that reaches a
+/// times the last step ahead multiplies the difference of the errors of the last two states by a.
 #[derive(Debug, Clone, Copy)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Extrapolation {

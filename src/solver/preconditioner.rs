@@ -76,8 +76,8 @@ impl Preconditioner {
 
 /// Range of the extension of the residual. For wavelengths beyond its thickness a layer on a half-space responds like
 /// the half-space. One on a rigid base acts as a bed of springs, which needs no extension, or, if it is incompressible,
-/// as −∇⁻², whose pressure falls to zero at the edge: then the residual continues with the opposite sign. A fifth of that
-/// suits both.
+/// as −∇⁻², whose pressure falls to zero at the edge: then the residual continues with the opposite sign. A fifth of
+/// that suits both.
 fn attenuation(kernel: &LocalKernel) -> Option<Attenuation> {
     let layer = kernel.whole.layer_of()?;
     let remains = -0.2 + 1.2 * layer.longest_over_half_space();

@@ -56,8 +56,8 @@ impl Indenter {
     fn slopes_of(&self, squared: f64, relief: f64, grid: &Grid) -> Slopes {
         // across a line contact the side of its one cell is a unit, not a length of the bodies
         let longest = (0..2).filter(|&k| grid.cells()[k] > 1).map(|k| grid.lengths()[k]).fold(0.0, f64::max);
-        // less than a nanometre over a millimetre, or than 1e-4 of more than 0.1 m: lengths in mm or µm that are read as
-        // metres
+        // less than a nanometre over a millimetre, or than 1e-4 of more than 0.1 m: lengths in mm or µm that are read
+        // as metres
         let rises_little = squared < 1e-6 * 1e-6 || longest > 0.1 && relief < 1e-4 * longest;
         // a smaller part of the height of the lowest point is rounding
         let too_flat = squared > 0.0 && rises_little && relief > 1e-12 * self.gap.datum.abs();

@@ -153,8 +153,8 @@ pub(crate) fn outgrown(
     Extent::hull(touched).map(|touched| region_holding(&ground.grid, folded, region.extent().with(touched)))
 }
 
-/// A region that holds these cells and a tenth beyond, so that it need not grow every request, or the whole grid where it
-/// would be most of it.
+/// A region that holds these cells and a tenth beyond, so that it need not grow every request, or the whole grid where
+/// it would be most of it.
 pub(crate) fn region_holding(grid: &Grid, folded: [bool; 2], held: Extent) -> Region {
     let whole = Region::whole(grid, folded);
     let region = Region::around(grid, folded, held, 0.1);

@@ -12,8 +12,8 @@ use crate::solver::Solution;
 /// over the work of separation of a length of the grid where this is more: about the force that pulls off a ball of
 /// its size.
 ///
-/// Over the lines of a sixteenth of the grid beside an edge the attraction falls at some rate, at which it is continued,
-/// over no more than half a length of the grid: a surface that stays as near ends somewhere.
+/// Over the lines of a sixteenth of the grid beside an edge the attraction falls at some rate, at which it is
+/// continued, over no more than half a length of the grid: a surface that stays as near ends somewhere.
 pub(super) fn attraction_beyond(scene: &Scene, law: &dyn Attraction, region: &Region, solution: &Solution) -> f64 {
     let (s, mut beyond) = (&solution.attraction, 0.0);
     let (cells, rows, periodic) = (region.cells(), region.rows(), scene.ground.kernel.periodic_axes());
@@ -42,8 +42,8 @@ pub(super) fn attraction_beyond(scene: &Scene, law: &dyn Attraction, region: &Re
 }
 
 impl Attracted {
-    /// The part of the force that is left out beyond the edge, where it is more than a thousandth, or than the tolerance
-    /// of the solver.
+    /// The part of the force that is left out beyond the edge, where it is more than a thousandth, or than the
+    /// tolerance of the solver.
     pub(in crate::contact::step) fn beyond_edge(&self, scene: &Scene) -> Option<f64> {
         Some(self.report.beyond_edge).filter(|share| *share > f64::max(1e-3, scene.ground.settings.tolerance))
     }
