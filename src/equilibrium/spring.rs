@@ -120,8 +120,7 @@ pub(crate) fn solve_with_springs(
                 // without force it hangs above the surface in this tilt, if it is higher than all of this force
                 // lowers it
                 let lifts = excess > 2.0 * force * (give + one_cell);
-                (next, trial.springs[body].hanging) =
-                    if lifts { (0.0, Some(*motion)) } else { (0.1 * force, None) };
+                (next, trial.springs[body].hanging) = if lifts { (0.0, Some(*motion)) } else { (0.1 * force, None) };
             }
             trial.springs[body].missing = (next - force).abs();
             worst = worst.max((next - force).abs() / force.max(next));

@@ -93,8 +93,7 @@ impl ActiveSet {
                 let sum = |solution: &Solution| self.set.sum(problem, body, &solution.pressure);
                 let carried = sum(solution);
                 let closed = balance(problem, body, &self.set, solution);
-                return !modes.freedom.translation
-                    || closed && is_small((sum(solution) - carried).abs(), carried);
+                return !modes.freedom.translation || closed && is_small((sum(solution) - carried).abs(), carried);
             }
             let before = &mut self.buffer;
             before.copy_from_slice(&solution.pressure);
