@@ -15,7 +15,8 @@ fn gaps(attraction: &dyn Attraction) -> impl Iterator<Item = f64> {
 /// corner of the law may leave the halves as the whole, and around a corner 24 times at most.
 fn integrate(
     rule: &GaussLegendre,
-    [from, to]: [f64; 2],
+    from: f64,
+    to: f64,
     accurate: f64,
     halved: usize,
     value: &dyn Fn(f64) -> f64,
@@ -26,8 +27,8 @@ fn integrate(
     if halved == 24 || halved >= 2 && off <= accurate {
         return halves;
     }
-    let part = |ends| integrate(rule, ends, accurate, halved + 1, value);
-    part([from, middle]) + part([middle, to])
+    let part = |from, to| integrate(rule, from, to, accurate, halved + 1, value);
+    part(from, middle) + part(middle, to)
 }
 
 fn check(law: &'static str, quantity: &'static str, gap: f64, [found, expected]: [f64; 2], holds: bool) -> Verdict {
@@ -99,7 +100,7 @@ fn energy_is_within(same: f64, attraction: &dyn Attraction) -> Verdict {
     let accurate = 1e-3 * same * work;
     for gap in gaps(attraction).skip(1) {
         let lost = attraction.energy(from) - attraction.energy(gap);
-        let integral = integrate(&rule, [from, gap], accurate, 0, &|gap| attraction.traction(gap));
+        let integral = integrate(&rule, from, gap, accurate, 0, &|gap| attraction.traction(gap));
         check(law, "energy", gap, [lost, integral], (lost - integral).abs() <= same * work)?;
         from = gap;
     }

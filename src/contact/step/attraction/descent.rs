@@ -25,30 +25,26 @@ use crate::load::Load;
 use crate::parallel::for_each_band;
 use crate::solver::Solution;
 
-/// The numbers of a descent, and of its softest direction; curvatures are over those of the convex part. They were chosen
-/// on `ADHESION_FOLDS`, `ADHESION_SCENES` and the steps of `adhesion_work`.
+/// The numbers of a descent, and of its softest direction; curvatures are over those of the convex part. They were
+/// chosen on `ADHESION_FOLDS`, `ADHESION_SCENES` and the steps of `adhesion_work`: what each changes there is in
+/// docs/maintainers/tuned_numbers.md.
 pub(super) struct Numbers {
     /// A descent ends where r, over the maximum traction, by which the force errs, is below so many tolerances of the
     /// solver, but no more than this, unless the tolerance is coarse: then below this part of it.
     tolerances: f64,
     most_left: f64,
     part_left: f64,
-    /// At this curvature r may be what was asked; below, it is to be smaller by the same factor, since the error is r
-    /// over the curvature.
+    /// At this curvature r may be what was asked; below, it is to be smaller by the same factor, as far as a
+    /// thousandth, since the error is r over the curvature.
     soft: f64,
-    smallest: f64,
-    /// Before any iteration r may be smooth, as what the far field has left is, and is worth more: it is to be smaller by
-    /// this factor.
+    /// Before any iteration r may be smooth, as what the far field has left is, and is worth more: it is to be smaller
+    /// by this factor.
     smooth: f64,
-    /// A mode that is soft shows in the curvature once stiff ones are out of r: after so many iterations.
-    measured: usize,
-    /// Where the curvature was less than this along some direction, the softest one is looked for before the step ends;
-    suspect: f64,
-    /// and again, as long as it is softer than this at its end.
-    very_soft: f64,
-    looks: usize,
-    /// Where the state before was stiffer than this, and the attraction no steeper since, none is looked for.
+    /// The softest direction is looked for before the step ends, unless the state before was stiffer than this, and
+    /// the attraction no steeper since; and so often at most, as long as it is softer than this at its end.
     near_fold: f64,
+    looks: usize,
+    very_soft: f64,
     /// A state whose energy bends down by more than this is none.
     unstable: f64,
     /// Where r is less, over the maximum traction, a step of negative curvature leads to the first minimum; else it has
@@ -72,13 +68,10 @@ pub(super) const NUMBERS: Numbers = Numbers {
     most_left: 1e-4,
     part_left: 0.3,
     soft: 0.2,
-    smallest: 1e-3,
     smooth: 0.1,
-    measured: 3,
-    suspect: 0.85,
-    very_soft: 0.005,
-    looks: 4,
     near_fold: 0.25,
+    looks: 4,
+    very_soft: 0.005,
     unstable: -1e-5,
     near: 0.1,
     longest: 4.0,
@@ -125,9 +118,8 @@ struct Trail {
     energy: Energy,
     /// y·r of the last direction, to which the next one is conjugate; 0 where it is to none.
     last: f64,
-    /// Curvatures along the last directions, and the least along any.
+    /// Curvatures along the last directions.
     recent: [f64; 8],
-    least: f64,
     /// The curvature along the softest direction, where it was looked for, and how often it was.
     softest: Option<f64>,
     looks: usize,
@@ -153,20 +145,13 @@ enum Place {
 impl AttractedStep<'_> {
     /// The largest |r| that ends a descent, over the maximum traction: the error is r over the curvature.
     pub(super) fn tolerance(&self, softness: f64) -> f64 {
-        self.limit() * (softness / NUMBERS.soft).clamp(NUMBERS.smallest, 1.0)
+        self.limit() * (softness / NUMBERS.soft).clamp(1e-3, 1.0)
     }
 
     /// The change of s over the maximum traction that ends a step.
     pub(super) fn limit(&self) -> f64 {
         let tolerance = self.stop.tolerance;
         (NUMBERS.tolerances * tolerance).min((NUMBERS.part_left * tolerance).max(NUMBERS.most_left))
-    }
-}
-
-impl Trail {
-    fn note(&mut self, curvature: f64) {
-        self.recent[self.iteration % self.recent.len()] = curvature;
-        self.least = self.least.min(curvature);
     }
 }
 
@@ -192,14 +177,15 @@ impl Descent<'_> {
                     (self.length(gradient), Some(steepest))
                 }
             };
-            trail.note(along.curvature);
+            let last = iteration % trail.recent.len();
+            trail.recent[last] = along.curvature;
             trail.last = match (self.go(along, &mut trail), steepest) {
                 (true, steepest) => steepest.unwrap_or(0.0),
                 (false, Some(_)) if trail.last > 0.0 => 0.0,
                 (false, Some(_)) => break,
                 (false, None) => {
                     // a state, or a mix of directions at a corner of the law
-                    trail.recent[iteration % trail.recent.len()] = 1.0;
+                    trail.recent[last] = 1.0;
                     continue;
                 }
             };
@@ -220,7 +206,6 @@ impl Descent<'_> {
             energy: self.energy(),
             last: 0.0,
             recent: [1.0; 8],
-            least: 1.0,
             softest: self.own.softest,
             looks: if self.own.looks { 0 } else { NUMBERS.looks },
             front: Front::new(held.region.cells(), held.region.folded()),
@@ -230,7 +215,7 @@ impl Descent<'_> {
     /// Decides what the point is. Near a state that may be unstable it looks for the softest direction.
     fn look(&mut self, trail: &mut Trail, gradient: &mut Gradient) -> Place {
         let recent = trail.recent.iter().fold(1.0_f64, |least, &soft| least.min(soft));
-        let soft = if trail.iteration < NUMBERS.measured { self.own.softness } else { recent };
+        let soft = if trail.iteration == 0 { self.own.softness } else { recent };
         let soft = soft.min(trail.softest.unwrap_or(1.0));
         let share = if trail.iteration == 0 { NUMBERS.smooth } else { 1.0 };
         if gradient.greatest > share * self.problem.tolerance(soft) {
@@ -239,10 +224,7 @@ impl Descent<'_> {
         let stiffness = trail.softest.unwrap_or_else(|| self.least_stiffness());
         let is_suspect = match trail.softest {
             Some(_) => stiffness < NUMBERS.very_soft && self.ends(*gradient, soft),
-            None => {
-                let may_be = trail.least < NUMBERS.suspect || trail.iteration < NUMBERS.measured;
-                may_be && stiffness < NUMBERS.near_fold
-            }
+            None => stiffness < NUMBERS.near_fold,
         };
         if is_suspect && trail.looks < NUMBERS.looks {
             let curvature = self.soften(trail.looks);

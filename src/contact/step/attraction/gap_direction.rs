@@ -181,8 +181,9 @@ impl Descent<'_> {
         state.held.current.solution.stiffness - most / problem.scene.ground.softening
     }
 
-    /// Looks for the softest direction of the open cells: writes it, with its M d/c, so long that it changes the gap by
-    /// [so many](super::descent::Numbers::span) ranges, and returns its curvature. It overwrites r, and computes q afresh.
+    /// Looks for the softest direction of the open cells: writes it, with its M d/c, so long that it changes the gap by a
+    /// [part](super::descent::Numbers::span) of the range, and returns its curvature. It overwrites r, and computes q
+    /// afresh.
     ///
     /// The search begins at random: the last direction has the symmetry of the state, and may have none of the one that
     /// breaks it. Each look of a descent begins anew: of two modes that are soft alike the last one has found a mix, and

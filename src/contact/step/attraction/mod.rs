@@ -96,8 +96,8 @@ impl AttractedStep<'_> {
         self.bodies.fill_gap_of_step(initial, &state.history, &state.held.current.solution.pressure, &mut trial.gap);
     }
 
-    /// Writes z, s and K (z − s) extrapolated from the last two states, or of the last state where s of a cell has changed by
-    /// more than half of its maximum.
+    /// Writes z, s and K (z − s) extrapolated from the last two states, or of the last state where s of a cell has
+    /// changed by more than half of its maximum.
     fn extrapolate(&self, trial: &mut Trial) {
         let (state, step) = (self.state, self.step);
         let (now, before) = (&state.held.current.solution, &state.previous.solution);
