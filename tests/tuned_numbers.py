@@ -2,11 +2,11 @@
 
     python3 tests/tuned_numbers.py src/states adaptive_runs_on_states_err STATES=40
 
-copies the repository to target/tuned, where each scalar constant of the source is a function, and each constant struct a
-static, that the environment variable TUNED="src/states/control.rs:AIM=0.5" (or TUNED="src/a/b.rs:NAME.field=2") multiplies,
-builds the suite once, and runs one of its tests with every number of the files that begin with the first argument halved
-and doubled. What is printed are the lines of the test
-that differ. docs/maintainers/tuned_numbers.md has the results.
+copies the repository to target/tuned, where each scalar f64 constant of the source is a function, and each number of a
+struct of a mechanism a value, that the environment variable TUNED="src/states/control.rs:STEPS.aim=0.5" multiplies,
+builds the suite once, and runs one of its tests with every number of the files that begin with the first argument
+halved and doubled. What is printed are the lines of the test that differ. docs/maintainers/tuned_numbers.md has the
+results.
 """
 
 import difflib
@@ -19,10 +19,10 @@ import sys
 
 ROOT = pathlib.Path(__file__).parent.parent
 TO = ROOT / "target" / "tuned"
-KINDS = "f64|usize|[iu]32|u64"
-CONSTANT = re.compile(rf"^([ \t]*)(pub(?:\([^)]*\))?\s+)?const\s+([A-Z][A-Z0-9_]*)\s*:\s*({KINDS})\s*=\s*([^;]+);", re.M)
-STRUCT = re.compile(r"^(pub(?:\([^)]*\))?\s+)?const\s+([A-Z][A-Z0-9_]*)\s*:\s*(\w+)\s*=\s*\3 \{([^{}]*)\};", re.M)
-FIELD = re.compile(r"(\w+): (-?\d[\w.]*(?:e-\d+)?)(?=\s*(?:,|$))")
+CONSTANT = re.compile(r"^([ \t]*)(pub(?:\([^)]*\))?\s+)?const\s+([A-Z][A-Z0-9_]*)\s*:\s*f64\s*=\s*([^;]+);", re.M)
+# numbers of a mechanism: a struct of them alone
+GATHERED = re.compile(r"^(pub(?:\([^)]*\))?\s+)?const\s+([A-Z][A-Z0-9_]*)\s*:\s*([A-Z]\w*)\s*=\s*\3\s*\{([^{}]*)\};", re.M)
+FIELD = re.compile(r"(\w+):\s*(\[[^\]]*\]|[^,\[\]]+)(?:,|$)")
 # what is no expression: uses, comments, characters and texts
 OTHER = re.compile(r"""^[ \t]*(?:pub(?:\([^)]*\))?\s+)?use\s+[^;]+;|//[^\n]*|'(?:[^'\\\n]|\\[^\n])'|r#"(?:[^"]|"(?!#))*"#|"(?:[^"\\]|\\[\s\S])*\"""", re.M)
 CHOICE = """//! Numbers that an environment variable multiplies.
@@ -43,29 +43,27 @@ pub(crate) fn number(name: &str, value: f64) -> f64 {
 
 
 def unchangeable(texts):
-    """Names in constants that are not scalars, and in patterns: a function cannot stand there."""
+    """Names in constants that are not scalars, in patterns and in texts: a function cannot stand there."""
     names = set()
     for text in texts.values():
         for kind, value in re.findall(r"(?:const|static)\s+[A-Z]\w*\s*:\s*([^=;]+(?:;[^=]+)?)=\s*((?:[^;]|;(?=[^\n]*\]))+);", text):
-            if not re.fullmatch(KINDS, kind.strip()):
+            if kind.strip() != "f64":
                 names |= set(re.findall(r"\b[A-Z][A-Z0-9_]+\b", value))
         names |= set(re.findall(r"(?:=>|\|)\s*([A-Z][A-Z0-9_]+)\s*=>", text))
-        names |= set(re.findall(rf"const\s+([A-Z][A-Z0-9_]*)\s*:\s*(?:{KINDS});", text))
-        # the length of an array
-        names |= set(re.findall(r";\s*([A-Z][A-Z0-9_]+)\s*\]", text))
+        names |= set(re.findall(r"const\s+([A-Z][A-Z0-9_]*)\s*:\s*f64;", text))
+        names |= set(re.findall(r"\{([A-Z][A-Z0-9_]+)[:}]", text))
     return names
 
 
-def constants(texts, where):
-    """Of each file the names of its numbers: none but of those that begin so."""
-    fixed = unchangeable({path: text for path, text in texts.items() if path.startswith(where)})
-    own = lambda path, text: {found[3] for found in CONSTANT.finditer(text)} if path.startswith(where) else set()
-    return {path: own(path, text) - fixed for path, text in texts.items()}
+def constants(texts):
+    """Of each file the names of its numbers."""
+    fixed = unchangeable(texts)
+    return {path: {found[3] for found in CONSTANT.finditer(text)} - fixed for path, text in texts.items()}
 
 
 def of_other_kinds(texts):
     """Names of constants of any other type."""
-    return {name for text in texts.values() for name in re.findall(rf"\bconst\s+([A-Z][A-Z0-9_]*)\s*(?:=|:(?!\s*(?:{KINDS})\s*=))", text)}
+    return {name for text in texts.values() for name in re.findall(r"\bconst\s+([A-Z][A-Z0-9_]*)\s*:(?!\s*f64\s*=)", text)}
 
 
 def of_module(module, shown):
@@ -95,50 +93,64 @@ def with_functions(path, text, own, shown, names):
     text = "".join(parts) + text[last:]
 
     def function(found):
-        indent, visible, name, kind, value = found.groups()
+        indent, visible, name, value = found.groups()
         if name not in own:
             return found[0]
-        number = f'std::sync::LazyLock::new(|| crate::tuned::number("{path}:{name}", ({value}) as f64) as {kind})'
-        body = f"static V: std::sync::LazyLock<{kind}> = {number}; *V"
-        return f"{indent}#[allow(non_snake_case)]\n{indent}{visible or ''}fn {name}() -> {kind} {{ {body} }}"
+        number = f'std::sync::LazyLock::new(|| crate::tuned::number("{path}:{name}", {value}))'
+        body = f"static V: std::sync::LazyLock<f64> = {number}; *V"
+        return f"{indent}#[allow(non_snake_case)]\n{indent}{visible or ''}fn {name}() -> f64 {{ {body} }}"
+
+    return CONSTANT.sub(function, with_statics(path, text))
+
+
+def fields(found):
+    """Names and values of the numbers of a struct; none where it holds anything else."""
+    pairs = FIELD.findall(" ".join(found[4].split()))
+    return pairs if all(re.fullmatch(r"[\[\]\d\s.,e*/+()_-]+|.*\bEPSILON\b.*", value.strip()) for _, value in pairs) else []
+
+
+def with_statics(path, text):
+    """A file whose structs of numbers are computed at the first use."""
 
     def static(found):
-        visible, name, kind, fields = found.groups()
-        number = lambda field: f'{field[1]}: crate::tuned::number("{path}:{name}.{field[1]}", {field[2]} as f64) as _'
-        fields = FIELD.sub(number, fields)
-        return f"{visible or ''}static {name}: std::sync::LazyLock<{kind}> = std::sync::LazyLock::new(|| {kind} {{{fields}}});"
+        visible, name, kind, _ = found.groups()
+        number = lambda field, value: f'crate::tuned::number("{path}:{name}.{field}", ({value.strip()}) as f64) as _'
+        each = lambda field, value: "[" + ", ".join(number(field, one) for one in value.strip("[] ").split(",")) + "]"
+        values = [f"{field}: {(each if value.startswith('[') else number)(field, value)}" for field, value in fields(found)]
+        if not values:
+            return found[0]
+        lock = f"std::sync::LazyLock<{kind}>"
+        return f"{visible or ''}static {name}: {lock} = std::sync::LazyLock::new(|| {kind} {{ {', '.join(values)} }});"
 
-    return STRUCT.sub(static, CONSTANT.sub(function, text))
+    return GATHERED.sub(static, text)
 
 
-def rewrite(where):
-    """The copy of the repository, and the names of the numbers of the files that begin so."""
+def rewrite():
+    """The copy of the repository, and the names of all its numbers."""
     wanted = lambda folder, names: [name for name in names if name in ("target", ".git")]
     shutil.rmtree(TO / "src", ignore_errors=True)
     shutil.copytree(ROOT, TO, ignore=wanted, dirs_exist_ok=True)
     files = [path for path in sorted((TO / "src").rglob("*.rs")) if "tests" not in path.parts and path.name != "tests.rs"]
     texts = {str(path.relative_to(TO)): path.read_text() for path in files}
-    found = constants(texts, where)
+    found = constants(texts)
     names = set().union(*found.values()) - of_other_kinds(texts)
     shown = found
     for _ in range(3):
-        shown = {path: shown[path] | taken_by(text, shown, names if path.startswith(where) else set())
-                 for path, text in texts.items()}
+        shown = {path: shown[path] | taken_by(text, shown, names) for path, text in texts.items()}
     for path, text in texts.items():
-        (TO / path).write_text(with_functions(path, text, found[path], shown, names if path.startswith(where) else set()))
+        (TO / path).write_text(with_functions(path, text, found[path], shown, names))
     lib = re.sub(r"#!\[(?:forbid|deny|warn)\([^\]]*\)\]", "", (TO / "src/lib.rs").read_text())
     first = re.search(r"^(?:pub )?mod ", lib, re.M).start()
     first = lib.rfind("\n\n", 0, first) + 2
     (TO / "src/lib.rs").write_text(lib[:first] + "mod tuned;\n" + lib[first:])
     (TO / "src/tuned.rs").write_text(CHOICE)
-    fields = {path: [f"{name}.{field}" for _, name, _, of in STRUCT.findall(text) for field, _ in FIELD.findall(of)]
-              for path, text in texts.items() if path.startswith(where)}
-    return [f"{path}:{name}" for path in fields for name in sorted(found[path]) + fields[path]]
+    gathered = [f"{path}:{found[2]}.{field}" for path, text in texts.items() for found in GATHERED.finditer(text) for field, _ in fields(found)]
+    return [f"{path}:{name}" for path in found for name in sorted(found[path])] + gathered
 
 
 def main():
     where, test, *settings = sys.argv[1:]
-    names = rewrite(where)
+    names = [name for name in rewrite() if name.startswith(where)]
     cargo = ["cargo", "test", "--all-features", "-p", "viscocontact-tests", "--test", "suite"]
     subprocess.run([*cargo, "--no-run"], cwd=TO, check=True)
 
