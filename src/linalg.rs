@@ -43,6 +43,9 @@ pub(crate) fn solve<const N: usize>(mut a: [[f64; N]; N], mut b: [f64; N], depen
     (x, rank)
 }
 
+/// Fraction of the square of a function, independent of the others, that counts as zero.
+pub(crate) const DEPENDENT: f64 = 1e-11;
+
 /// Solves the normal equations Σ w f fᵀ x = `right` of a least-squares fit of functions f, scaled to a unit diagonal.
 /// The coefficient of a function is 0 if at most the fraction `dependent` of its square is independent of the others.
 pub(crate) fn solve_normal_equations<const N: usize>(
@@ -59,8 +62,6 @@ pub(crate) fn solve_normal_equations<const N: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    const DEPENDENT: f64 = 1e-11;
 
     /// Numbers from −1 to 1, the same on every machine.
     fn random(state: &mut u64) -> f64 {

@@ -5,43 +5,29 @@ use crate::adhesion::Attraction;
 pub use crate::error::{Location, Verdict, Violation};
 use crate::quadrature::GaussLegendre;
 
-/// Gaps for each decade, from a thousandth of the range on.
-const PER_DECADE: i32 = 40;
-const DECADES: i32 = 9;
-/// Points of a quadrature between two gaps.
-const POINTS: usize = 12;
-/// Difference of an integral from a difference of energies, over the work of separation: of a law that is tested, and
-/// of one that a contact takes.
-const SAME: f64 = 1e-7;
-const USABLE: f64 = 1e-3;
-/// Halvings of an interval around a corner of the law, and halvings of every interval: by itself a corner may leave
-/// the halves as the whole.
-const HALVINGS: usize = 24;
-const LEAST_HALVINGS: usize = 2;
-
-/// Gap 0, then gaps in a geometric series \[m\].
+/// Gap 0, then gaps in a geometric series, 40 a decade, from a thousandth of the range to a million ranges \[m\].
 fn gaps(attraction: &dyn Attraction) -> impl Iterator<Item = f64> {
     let range = attraction.range();
-    let steps = 0..=DECADES * PER_DECADE;
-    std::iter::once(0.0).chain(steps.map(move |k| 1e-3 * range * 10f64.powf(f64::from(k) / f64::from(PER_DECADE))))
+    std::iter::once(0.0).chain((0..=360).map(move |k| 1e-3 * range * 10f64.powf(f64::from(k) / 40.0)))
 }
 
-/// The integral over an interval, which is halved where two halves differ from the whole.
+/// The integral over an interval, which is halved where two halves differ from the whole: twice at least, since a
+/// corner of the law may leave the halves as the whole, and around a corner 24 times at most.
 fn integrate(
     rule: &GaussLegendre,
     from: f64,
     to: f64,
     accurate: f64,
-    halvings: usize,
+    halved: usize,
     value: &dyn Fn(f64) -> f64,
 ) -> f64 {
     let middle = 0.5 * (from + to);
     let halves = rule.integrate(from, middle, value) + rule.integrate(middle, to, value);
     let off = (halves - rule.integrate(from, to, value)).abs();
-    if halvings == 0 || halvings + LEAST_HALVINGS <= HALVINGS && off <= accurate {
+    if halved == 24 || halved >= 2 && off <= accurate {
         return halves;
     }
-    let part = |from, to| integrate(rule, from, to, accurate, halvings - 1, value);
+    let part = |from, to| integrate(rule, from, to, accurate, halved + 1, value);
     part(from, middle) + part(middle, to)
 }
 
@@ -59,11 +45,11 @@ pub fn all(attraction: &dyn Attraction) -> Verdict {
     energy_is_the_integral(attraction)
 }
 
-/// Every law, as far as a contact needs it: an energy may be an integral by a rule of the user.
+/// Every law, as far as a contact needs it: an energy may be an integral by a rule of the user, off by a thousandth.
 pub(crate) fn usable(attraction: &dyn Attraction) -> Verdict {
     scales_are_positive(attraction)?;
     attracts_less_with_the_gap(attraction)?;
-    energy_is_within(USABLE, attraction)
+    energy_is_within(1e-3, attraction)
 }
 
 /// Work of separation, range and maximum traction are finite and positive, and fit each other.
@@ -104,16 +90,17 @@ pub fn attracts_less_with_the_gap(attraction: &dyn Attraction) -> Verdict {
 /// # Errors
 /// The first violation.
 pub fn energy_is_the_integral(attraction: &dyn Attraction) -> Verdict {
-    energy_is_within(SAME, attraction)
+    energy_is_within(1e-7, attraction)
 }
 
+/// Differences of energies are integrals to this part of the work of separation.
 fn energy_is_within(same: f64, attraction: &dyn Attraction) -> Verdict {
-    let (law, rule) = ("the energy is the integral of the traction", GaussLegendre::new(POINTS));
+    let (law, rule) = ("the energy is the integral of the traction", GaussLegendre::new(12));
     let (work, mut from) = (attraction.work(), 0.0);
     let accurate = 1e-3 * same * work;
     for gap in gaps(attraction).skip(1) {
         let lost = attraction.energy(from) - attraction.energy(gap);
-        let integral = integrate(&rule, from, gap, accurate, HALVINGS, &|gap| attraction.traction(gap));
+        let integral = integrate(&rule, from, gap, accurate, 0, &|gap| attraction.traction(gap));
         check(law, "energy", gap, [lost, integral], (lost - integral).abs() <= same * work)?;
         from = gap;
     }

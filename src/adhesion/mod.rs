@@ -32,12 +32,11 @@ use crate::error::{Result, finite, length, positive};
 /// slope −s′ up to the gap 4ρ. On a body of contact modulus E* the attraction acts over a zone of the length E* over
 /// this slope.
 pub(crate) fn softening(law: &dyn Attraction) -> f64 {
-    /// Differences for each range: 5 over the narrowest end of Dugdale's law.
-    const PER_RANGE: u32 = 500;
     let (work, range) = (law.work(), law.range());
-    let step = range / f64::from(PER_RANGE);
+    // 5 differences over the narrowest end of Dugdale's law
+    let step = range / 500.0;
     let (mut before, mut steepest) = (law.traction(0.0), 0.0_f64);
-    for k in 1..=4 * PER_RANGE {
+    for k in 1..=2000 {
         let traction = law.traction(f64::from(k) * step);
         steepest = steepest.max((before - traction) / step);
         before = traction;

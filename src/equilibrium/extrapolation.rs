@@ -3,20 +3,14 @@
 /// A guess reaches at most this many times the length of the last step ahead.
 pub(crate) const MAX_REACH: f64 = 2.0;
 
-/// The first guess of a step extrapolates p and K p alike, which saves a convolution but lets the rounding of K p
-/// accumulate, step by step linearly. After so many steps K p is computed afresh, in two successive steps:
-/// extrapolation reads two states, and one left stale would feed its error back, multiplied. This costs a
-/// thirty-second of a convolution per step.
-const STEPS_BETWEEN_REFRESHES: usize = 62;
-
-/// K p is computed afresh, too, when the force has fallen by this factor: the rounding came from the larger force.
-const FALL_BETWEEN_REFRESHES: f64 = 8.0;
-
-/// And when steps that grow have multiplied the rounding by this: a guess that reaches a times the last step ahead
-/// multiplies the difference of the errors of the last two states by a.
-const GROWTH_BETWEEN_REFRESHES: f64 = 1e3;
-
 /// The length of the step to extrapolate from, and when K p was last computed afresh.
+///
+/// The first guess of a step extrapolates p and K p alike, which saves a convolution but lets the rounding of K p
+/// accumulate, step by step linearly. After 62 steps K p is computed afresh, in two successive steps: extrapolation
+/// reads two states, and one left stale would feed its error back, multiplied. This costs a thirty-second of a
+/// convolution per step. K p is computed afresh, too, when the force has fallen by a factor of 8, since the rounding
+/// came from the larger force, and when steps that grow have multiplied the rounding by 1000: a guess that reaches a
+/// times the last step ahead multiplies the difference of the errors of the last two states by a.
 #[derive(Debug, Clone, Copy)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Extrapolation {
@@ -64,10 +58,7 @@ impl Extrapolation {
         self.stale = self.stale.saturating_add(1);
         self.greatest = self.greatest.max(sum);
         self.growth *= reach.max(1.0);
-        if self.growth > GROWTH_BETWEEN_REFRESHES
-            || self.stale >= STEPS_BETWEEN_REFRESHES
-            || sum < self.greatest / FALL_BETWEEN_REFRESHES
-        {
+        if self.growth > 1e3 || self.stale >= 62 || sum < self.greatest / 8.0 {
             self.due = 2;
         }
     }

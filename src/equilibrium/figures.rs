@@ -11,9 +11,6 @@ use crate::solver::RigidMotion;
 pub(crate) const DEEP: f64 = 0.2;
 /// Contact moduli E* outside this range are in other units than Pa \[Pa\].
 const SOLID: std::ops::RangeInclusive<f64> = 10.0..=1e13;
-
-/// Contact this near to an edge is near it \[cells\].
-const EDGE_MARGIN: usize = 2;
 /// The numbers behind [`Warnings`], each `None` where the scene is far from its limit; `Display` of a
 /// [`StepReport`](crate::contact::StepReport) prints them with the warnings.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -111,7 +108,7 @@ impl Held {
         let Ground { grid, kernel, settings, .. } = ground;
         let (axes, periodic, solution) = (grid.cells(), kernel.periodic_axes(), &self.current.solution);
         let near = reach.is_some_and(|Extent { low, high }| {
-            let at_end = |axis: usize| low[axis] <= EDGE_MARGIN || high[axis] + EDGE_MARGIN + 1 >= axes[axis];
+            let at_end = |axis: usize| low[axis] <= 2 || high[axis] + 3 >= axes[axis];
             (0..2).any(|axis| !periodic[axis] && at_end(axis))
         });
         let is_rounded = solution.relative_rounding > settings.tolerance || self.heights_are_lost(ground);

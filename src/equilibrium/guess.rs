@@ -5,14 +5,6 @@ use crate::equilibrium::{Equilibrium, Held, Request, Trial, Window};
 use crate::parallel::{Rows, for_each_band};
 use crate::solver::{Counts, Freedom, RigidMotion, Solution};
 
-/// A guess is extrapolated only if it carries the force to within this factor: the remainder of a cancellation is
-/// noise.
-const MAX_FORCE_RATIO: f64 = 1.5;
-
-/// If motions are given and the pressure falls to less than this share in a step, its last change does not predict
-/// the next: the guess is the last pressure times the share.
-const MAX_SHARE_LEFT: f64 = 0.5;
-
 /// Fills the trial with a guess at the compliance `c`: p and K p extrapolated from the equilibrium `before` the last
 /// one, as far as `longest` times its distance. Under bodies of given motion whose pressure falls a lot, the last
 /// pressure is scaled: an extrapolated K p would keep the rounding of the greater pressure. Returns whether the guess
@@ -47,7 +39,8 @@ pub(crate) fn initial_guess(
         [only] if only.translation => only.total,
         _ => held.current.sum,
     };
-    let near = |sum: f64| (wanted / MAX_FORCE_RATIO..=wanted * MAX_FORCE_RATIO).contains(&sum);
+    // what carries another force is the remainder of a cancellation, and noise
+    let near = |sum: f64| (wanted / 1.5..=wanted * 1.5).contains(&sum);
     if !near(guessed) {
         reach = 0.0;
     }
@@ -64,8 +57,9 @@ pub(crate) fn initial_guess(
     reach > 0.0
 }
 
-/// The share of the last pressure that best closes the gap of the step, if it is small. It is exact on a fixed
-/// contact with a single relaxation time, and under a punch that is retracted from an elastic body.
+/// The share of the last pressure that best closes the gap of the step, if it is less than half: then its last change
+/// does not predict the next. It is exact on a fixed contact with a single relaxation time, and under a punch that is
+/// retracted from an elastic body.
 fn share_left(held: &Held, trial: &Trial, c: f64) -> Option<f64> {
     let (now, rows) = (&held.current.solution, held.region.rows());
     let pressed = |k: usize| now.pressure[k] > 0.0;
@@ -79,7 +73,7 @@ fn share_left(held: &Held, trial: &Trial, c: f64) -> Option<f64> {
         })
     });
     let share = overlap / square;
-    (share < MAX_SHARE_LEFT).then_some(share.max(0.0))
+    (share < 0.5).then_some(share.max(0.0))
 }
 
 /// The reach a of the guess p₀ + a (p₀ − p₁), scaled to Σ p = `wanted`, with the least energy ½ c p·K p + gap·p. It

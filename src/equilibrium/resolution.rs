@@ -6,12 +6,6 @@ use crate::extent::Extent;
 use crate::parallel::Rows;
 use crate::sum;
 
-/// A contact of fewer cells across, or of fewer cells, which are a disc as wide, is not resolved. By where it lies
-/// between the cells the mean chord makes of such a disc one of 7 to 8.5.
-const LEAST_ACROSS: f64 = 8.0;
-const LEAST_CELLS: f64 = 50.0;
-const LEAST_MEAN: f64 = 7.0;
-
 /// The interval that holds two others.
 fn joined(a: Option<[usize; 2]>, b: Option<[usize; 2]>) -> Option<[usize; 2]> {
     match (a, b) {
@@ -165,7 +159,8 @@ impl Resolution {
         let along = |axis: usize| {
             let extent = (extent.high[axis] + 1 - extent.low[axis]) as f64;
             let chord = 2.0 * self.cells / self.sides[axis] / if line { 1.0 } else { FRAC_PI_4 };
-            let few = extent < LEAST_ACROSS || chord < LEAST_MEAN || !line && self.cells < LEAST_CELLS;
+            // 50 cells are a disc 8 wide; by where it lies between the cells the mean chord makes of it one of 7 to 8.5
+            let few = extent < 8.0 || chord < 7.0 || !line && self.cells < 50.0;
             few.then(|| chord.min(extent))
         };
         let ended = (0..2).filter(|&axis| !is_line(axis) && self.sides[axis] > 0.0);

@@ -16,15 +16,6 @@ use crate::quadrature::bisect;
 use crate::solver::Outcome;
 use crate::sum::ROUNDING;
 
-/// Maximum number of forces that are tried.
-const MAX_FORCES: usize = 60;
-/// The relative change of the force that is still to come, over the tolerance of the solver.
-const SHARE_OF_TOLERANCE: f64 = 0.3;
-/// The next force over the last, where a body that tilts freely may bear none.
-const SMALLER: f64 = 0.1;
-/// Halvings of the depth of a first contact.
-const HALVINGS: usize = 40;
-
 /// The springs of the bodies, each with the body that it drives, its compliance \[m/N\] and its drive from the datum
 /// of the gap.
 fn springs(request: Request<'_>) -> impl Iterator<Item = (usize, f64, f64)> + Clone {
@@ -73,7 +64,7 @@ pub(crate) fn guess_forces(ground: &Ground, held: &Held, gap: &Gap, request: Req
                 0.5 * depth * (cells * area).sqrt() / (0.375 * PI.sqrt() * c)
             };
             let is_short = |depth: f64| depth + give * carried(depth) < drive - lowest;
-            let depth = bisect(0.0, (drive - lowest).max(0.0), HALVINGS, is_short)[1];
+            let depth = bisect(0.0, (drive - lowest).max(0.0), 40, is_short)[1];
             // a body that does not respond takes all that the spring presses with, beyond rounding
             let rounding = ROUNDING * (drive.abs() + lowest.abs() + gap.datum.abs());
             match depth > 0.0 {
@@ -98,7 +89,7 @@ pub(crate) fn solve_with_springs(
 ) -> Outcome {
     let (area, least) = (held.region.cell_area(), yielding(ground, held, c));
     let one_cell = c / ground.grid.cell_area().sqrt();
-    for tries in 0..MAX_FORCES {
+    for tries in 0..60 {
         let outcome = solve(trial);
         if springs(request).next().is_none() || outcome != Outcome::Converged {
             return outcome;
@@ -129,15 +120,14 @@ pub(crate) fn solve_with_springs(
                 // without force it hangs above the surface in this tilt, if it is higher than all of this force
                 // lowers it
                 let lifts = excess > 2.0 * force * (give + one_cell);
-                (next, trial.springs[body].hanging) =
-                    if lifts { (0.0, Some(*motion)) } else { (SMALLER * force, None) };
+                (next, trial.springs[body].hanging) = if lifts { (0.0, Some(*motion)) } else { (0.1 * force, None) };
             }
             trial.springs[body].missing = (next - force).abs();
             worst = worst.max((next - force).abs() / force.max(next));
             trial.free[body].total = next / area;
         }
-        // at a jump of a body without elastic response nothing moves
-        if c == 0.0 || worst <= SHARE_OF_TOLERANCE * request.tolerance {
+        // at a jump of a body without elastic response nothing moves; `worst` is a change that is still to come
+        if c == 0.0 || worst <= 0.3 * request.tolerance {
             springs(request).for_each(|(body, ..)| trial.free[body].total = trial.springs[body].force / area);
             return outcome;
         }

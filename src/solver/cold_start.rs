@@ -5,9 +5,6 @@ use std::f64::consts::PI;
 use super::{ContactSet, ModeCoefficients, Problem, RestingPosition, Solution};
 use crate::quadrature::bisect;
 
-/// Bisections for the level, far beyond the accuracy that a guess needs.
-const LEVEL_BISECTIONS: usize = 40;
-
 /// Clips a guess to p ≥ 0 on cells that may carry pressure, balances it, and sets the contact to the cells with
 /// pressure. Fails with the body whose load no pressure can balance.
 pub(crate) fn make_feasible(problem: &Problem<'_>, set: &mut ContactSet, solution: &mut Solution) -> Result<(), usize> {
@@ -99,7 +96,7 @@ fn fill_hertz(problem: &Problem<'_>, body: usize, set: &ContactSet, solution: &m
         // the rise falls with the level: the balance is unique, and above the highest gap if the load presses the
         // whole face
         let is_low = |level: f64| level - lowest < rise(level);
-        let between = || bisect(lowest, highest, LEVEL_BISECTIONS, is_low)[1];
+        let between = || bisect(lowest, highest, 40, is_low)[1];
         (if is_low(highest) { lowest + rise(highest) } else { between() }, 1.0)
     } else if lowest < 0.0 {
         let level = 0.5 * lowest;

@@ -5,12 +5,6 @@ use std::ops::Range;
 use super::{Bands, Gram, ModeCoefficients, Passes, Problem, RowSegments, dot};
 use crate::sum::{self, greatest, sum};
 
-/// Newton iterations of [`ContactSet::balance`]; it needs one where nothing is clipped.
-const MAX_BALANCE_ITERATIONS: usize = 60;
-
-/// Imbalance, relative to the load, that counts as rounding.
-const BALANCE_TOLERANCE: f64 = 4.0 * f64::EPSILON;
-
 /// The cells in contact under all bodies.
 #[derive(Debug, Clone)]
 pub(crate) struct ContactSet {
@@ -190,8 +184,9 @@ impl ContactSet {
         }
         let mut y = [0.0; 3];
         let (mut gram, mut sums, mut value) = evaluate(y);
-        for _ in 0..MAX_BALANCE_ITERATIONS {
-            if sums.iter().all(|sum| sum.abs() <= BALANCE_TOLERANCE * size) {
+        // one iteration is needed where nothing is clipped
+        for _ in 0..60 {
+            if sums.iter().all(|sum| sum.abs() <= 4.0 * f64::EPSILON * size) {
                 return Some(ModeCoefficients(y));
             }
             let step = gram.solve(sums);

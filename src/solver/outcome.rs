@@ -66,9 +66,6 @@ pub(crate) const PENETRATION_SLACK: f64 = 10.0;
 /// Lengths whose squares underflow \[m\].
 const UNDERFLOW: f64 = 1.5e-154;
 
-/// Penetrating cells join the contact if they are deeper than this fraction of the deepest.
-const JOIN_OVER_DEEPEST: f64 = 0.2;
-
 impl ResidualSums {
     /// The sums over a set of cells before they are computed.
     pub(crate) fn of(set: &ContactSet) -> ResidualSums {
@@ -120,6 +117,6 @@ impl ResidualSums {
     /// would mostly leave again. A body that penetrates deeper than the surface yields is far from its position: then
     /// only the deepest cells join.
     pub(crate) fn joining_depth(&self) -> f64 {
-        self.penetration * if self.penetration > self.yielding() { 0.5 } else { JOIN_OVER_DEEPEST }
+        self.penetration * if self.penetration > self.yielding() { 0.5 } else { 0.2 }
     }
 }

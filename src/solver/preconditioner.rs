@@ -5,17 +5,12 @@ use std::sync::Arc;
 use super::{Attenuation, ContactSet, Extension, ExtensionKind};
 use crate::kernel::{LocalKernel, SpectralOperator, TransformWorkspace, Workspace};
 
-/// Factor of the extended residual where the distance from the contact exceeds the thickness of a layer on a rigid
-/// base. There M acts as K⁻¹ of a bed of springs, which needs no extension, or of an incompressible layer, −∇⁻², whose
-/// pressure falls to zero at the edge: then the residual continues with the opposite sign. A fifth of that suits both.
-const BEYOND_LAYER: f64 = -0.2;
-
 /// Eᵀ M E ≈ (K on A)⁻¹, with M ≈ K⁻¹, a multiplication in wave space on a grid without padding
 /// ([`LocalKernel::inverse`]): for the half-space a quarter of the size of a convolution.
 ///
 /// M alone, cut off at the edge of the set A of cells in contact, would be wrong over a strip along the edge, a cell
 /// wide, and the more so the finer the mesh. The [`Extension`] E continues the residual smoothly beyond the edge
-/// instead; on a layer no farther than the layer is thick ([`BEYOND_LAYER`]).
+/// instead; on a layer no farther than the layer is thick ([`attenuation`]).
 #[derive(Debug, Clone)]
 pub(crate) struct Preconditioner {
     operator: Arc<SpectralOperator>,
@@ -80,10 +75,12 @@ impl Preconditioner {
 }
 
 /// Range of the extension of the residual. For wavelengths beyond its thickness a layer on a half-space responds like
-/// the half-space.
+/// the half-space. One on a rigid base acts as a bed of springs, which needs no extension, or, if it is incompressible,
+/// as −∇⁻², whose pressure falls to zero at the edge: then the residual continues with the opposite sign. A fifth of
+/// that suits both.
 fn attenuation(kernel: &LocalKernel) -> Option<Attenuation> {
     let layer = kernel.whole.layer_of()?;
-    let remains = BEYOND_LAYER + (1.0 - BEYOND_LAYER) * layer.longest_over_half_space();
+    let remains = -0.2 + 1.2 * layer.longest_over_half_space();
     let (cells, spacing) = (kernel.rows().cells(), kernel.grid().spacing());
     // blocks are as long as broad in cells
     let side = match cells {

@@ -4,12 +4,6 @@ use super::{ModeCoefficients, Modes};
 use crate::linalg;
 use crate::parallel::Rows;
 
-/// Number of pivots after which the search ends: its result is a guess, and any motion serves as a guess.
-const MAX_PIVOTS: usize = 200;
-
-/// Pivots of the elimination, of modes of order one, that count as zero.
-const DEPENDENT_PIVOT: f64 = 1e-14;
-
 /// A rigid body at rest on an undeformed surface.
 pub(crate) struct RestingPosition {
     pub(crate) motion: ModeCoefficients,
@@ -41,7 +35,8 @@ impl RestingPosition {
         let mut basis = [0, 1, 2].map(|m| (unit(m), if modes.free()[m] { artificial } else { 0.0 }));
         let mut cell_of_column = [None; 3];
         let mut dual = ModeCoefficients::default();
-        for _ in 0..MAX_PIVOTS {
+        // the result is a guess, and any motion serves as one
+        for _ in 0..200 {
             // y with column·y = cost for every column of the basis
             let Some(next) = solve(basis.map(|(column, _)| column), basis.map(|(_, cost)| cost)) else { break };
             dual = ModeCoefficients(next);
@@ -83,6 +78,7 @@ fn solve_primal(basis: &[Column; 3], right: [f64; 3]) -> Option<[f64; 3]> {
 
 /// `None` if the columns of the basis depend on each other.
 fn solve(matrix: [[f64; 3]; 3], right: [f64; 3]) -> Option<[f64; 3]> {
-    let (x, rank) = linalg::solve(matrix, right, DEPENDENT_PIVOT);
+    // modes are of order one
+    let (x, rank) = linalg::solve(matrix, right, 1e-14);
     (rank == 3).then_some(x)
 }

@@ -75,10 +75,6 @@ impl ModeCoefficients {
     }
 }
 
-/// Fraction of the square of a mode, independent of the other modes, that counts as zero: the cells do not determine
-/// the motion (fewer than three, or all on a line).
-const DEPENDENT_FRACTION: f64 = 1e-11;
-
 /// The free motions of a body as functions on the grid.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Modes<'a> {
@@ -206,7 +202,7 @@ impl Gram {
 
     /// Solves Gram x = `right`; x is zero for a mode that depends on the others.
     pub(crate) fn solve(&self, right: [f64; 3]) -> [f64; 3] {
-        linalg::solve_normal_equations(&self.entries, right, DEPENDENT_FRACTION)
+        linalg::solve_normal_equations(&self.entries, right, linalg::DEPENDENT)
     }
 }
 

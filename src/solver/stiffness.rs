@@ -5,7 +5,6 @@ use crate::kernel::LocalKernel;
 
 /// Residual of the displacement, relative to it.
 pub(crate) const FLAT_PUNCH_TOLERANCE: f64 = 1e-7;
-const MAX_ITERATIONS: usize = 500;
 
 /// q with K q = `motion` on cells for which `touches` holds and q = 0 elsewhere: the pressure under a rigid motion of
 /// a body of unit compliance, by preconditioned conjugate gradients. If they do not converge, it fails with their
@@ -43,7 +42,7 @@ pub(crate) fn flat_punch(
         restrict(&mut image);
         let curvature = rows.sum_of_pairs(&direction, &image, |a, b| a * b);
         let length = energy / curvature;
-        if !length.is_finite() || curvature <= 0.0 || iterations > MAX_ITERATIONS {
+        if !length.is_finite() || curvature <= 0.0 || iterations > 500 {
             return Err(failure);
         }
         q.iter_mut().zip(&direction).for_each(|(q, d)| *q += length * d);

@@ -1,23 +1,19 @@
 //! Where the work of a load goes.
 
 use crate::contact::stepper::ViscoelasticContact;
-use crate::contact::{State, StepReport, Warnings};
+use crate::contact::{PassReport, State, StepReport, Warnings};
 use crate::error::{Result, count_within, coverage, within};
 use crate::hereditary::BranchEnergies;
 use crate::load::{Load, Tilt};
 use crate::rounded::rounded;
 
-/// A step whose work the forces at its ends do not tell to this part of the energy, or of the work of separation of
-/// so many cells, is looked at in parts, as far as to a sixteenth of it.
-const INEXACT: f64 = 1e-3;
-const CELLS: f64 = 10.0;
+/// A step whose work the forces at its ends do not tell to what [counts](PassReport::noticed) is looked at in parts, as
+/// far as to a sixteenth of it.
 const HALVINGS: u32 = 4;
 /// A step whose balance is off by more than this part of the energies is divided, and its parts are by their share of
 /// it, as far as to a 256th of the step: a pull-off within one takes about as many.
 const UNBALANCED: f64 = 5e-3;
 const MOST_HALVINGS: u32 = 8;
-/// A balance that is off by more than this part of the energies warns.
-const WRONG: f64 = 0.05;
 
 /// Follows what the load of a contact does, and what the bodies store and dissipate of it.
 ///
@@ -115,7 +111,7 @@ impl Energies {
                 "the energies are out of balance by {off} J, {percent} % of them: take shorter steps (Run::stop_at)"
             )
         };
-        (off.abs() > WRONG * whole).then(off_by)
+        (off.abs() > 0.05 * whole).then(off_by)
     }
 
     /// The sum of what is stored and what is gone, at least the work.
@@ -239,8 +235,8 @@ impl EnergyBalance {
     /// Whether the work of the last step is not known from the forces at its ends.
     fn is_inexact(&self, contact: &ViscoelasticContact) -> bool {
         let Some((attraction, passes)) = contact.fields().attraction().zip(contact.passes()) else { return false };
-        let of_cells = CELLS * contact.grid().cell_area() * attraction.energy(0.0);
-        passes.unaccounted.abs() > INEXACT * self.energies.stored.abs().max(of_cells)
+        let of_cell = contact.grid().cell_area() * attraction.energy(0.0);
+        passes.unaccounted.abs() > PassReport::noticed(self.energies.stored.abs(), of_cell)
     }
 
     /// Takes in the last step in two halves, each computed again; returns whether they end where the step did.

@@ -2,12 +2,6 @@
 
 use crate::Grid;
 
-/// Corners nearer to a line than this fraction of the grid's length are on it.
-const COLLINEAR: f64 = 1e-12;
-/// A load nearer to the boundary than this fraction of the grid's length is on it: the shares of the force that inner
-/// cells would carry are rounding.
-const ON_BOUNDARY: f64 = 1e-11;
-
 /// The convex hull of some cell centres.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Hull {
@@ -39,8 +33,10 @@ impl Hull {
             }
         }
         let [l1, l2] = grid.lengths();
-        let tolerance = ON_BOUNDARY * l1.max(l2);
-        let area = COLLINEAR * l1.max(l2) * l1.min(l2);
+        // a load so near to the boundary is on it: the shares of the force that inner cells would carry are rounding
+        let tolerance = 1e-11 * l1.max(l2);
+        // corners so near to a line are on it
+        let area = 1e-12 * l1.max(l2) * l1.min(l2);
         let half = |points: &mut dyn Iterator<Item = [f64; 2]>| {
             let mut chain: Vec<[f64; 2]> = Vec::new();
             for point in points {

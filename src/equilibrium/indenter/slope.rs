@@ -6,14 +6,6 @@ use crate::solver::{HaloExchange, HaloRows};
 
 /// Slopes beyond this are not small. Where the paraboloid of a sphere is this steep, the sphere itself is 7 % deeper.
 pub(crate) const STEEP: f64 = 0.5;
-/// Bodies without a slope beyond this are no real ones: a nanometre over a millimetre.
-const FLAT: f64 = 1e-6;
-/// Nor do surfaces of so great a length rise by less than this part of it \[m, 1\]: lengths in mm or µm that are read
-/// as metres.
-const LONG: f64 = 0.1;
-const LEAST_RISE: f64 = 1e-4;
-/// A relief of a smaller part of the height of the lowest point is rounding.
-const RELIEF: f64 = 1e-12;
 
 /// What the slopes of the gap on the whole grid say.
 #[derive(Debug, Clone, Copy)]
@@ -64,8 +56,11 @@ impl Indenter {
     fn slopes_of(&self, squared: f64, relief: f64, grid: &Grid) -> Slopes {
         // across a line contact the side of its one cell is a unit, not a length of the bodies
         let longest = (0..2).filter(|&k| grid.cells()[k] > 1).map(|k| grid.lengths()[k]).fold(0.0, f64::max);
-        let rises_little = squared < FLAT * FLAT || longest > LONG && relief < LEAST_RISE * longest;
-        let too_flat = squared > 0.0 && rises_little && relief > RELIEF * self.gap.datum.abs();
+        // less than a nanometre over a millimetre, or than 1e-4 of more than 0.1 m: lengths in mm or µm that are read
+        // as metres
+        let rises_little = squared < 1e-6 * 1e-6 || longest > 0.1 && relief < 1e-4 * longest;
+        // a smaller part of the height of the lowest point is rounding
+        let too_flat = squared > 0.0 && rises_little && relief > 1e-12 * self.gap.datum.abs();
         Slopes { any_steep: squared > STEEP * STEEP, too_flat }
     }
 

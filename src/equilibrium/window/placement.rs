@@ -11,9 +11,6 @@ use crate::load::{Load, Tilt};
 use crate::quadrature::bisect;
 use crate::solver::RigidMotion;
 
-/// Bisections for the approach at first contact, an estimate.
-const HALVINGS: usize = 24;
-
 /// The region that a solution has to begin on, unless it is the one held: symmetric where the region is folded and
 /// the indenter is not `moving` along that axis, and with the first contact within it, at the compliance `first` of
 /// bodies that are yet to touch. Also returns whether it was chosen for a contact.
@@ -98,11 +95,10 @@ fn level(ground: &Ground, all: &Region, indenter: &Indenter, body: usize, force_
     if is_low(highest) {
         return [lowest, rise(highest)]; // all of it is pressed
     }
-    [lowest, bisect(lowest, highest, HALVINGS, is_low)[1] - lowest]
+    // an estimate
+    [lowest, bisect(lowest, highest, 24, is_low)[1] - lowest]
 }
 
-/// Cells that a region holds beyond the reach of contact, so that it need not grow every request.
-const MARGIN: f64 = 0.1;
 /// A region that would be larger than this part of the grid is all of it.
 pub(crate) const MAX_WINDOW_FRACTION: f64 = 0.7;
 
@@ -157,10 +153,11 @@ pub(crate) fn outgrown(
     Extent::hull(touched).map(|touched| region_holding(&ground.grid, folded, region.extent().with(touched)))
 }
 
-/// A region of suitable size that holds these cells, or the whole grid where it would be most of it.
+/// A region that holds these cells and a tenth beyond, so that it need not grow every request, or the whole grid where
+/// it would be most of it.
 pub(crate) fn region_holding(grid: &Grid, folded: [bool; 2], held: Extent) -> Region {
     let whole = Region::whole(grid, folded);
-    let region = Region::around(grid, folded, held, MARGIN);
+    let region = Region::around(grid, folded, held, 0.1);
     if region.len() as f64 > MAX_WINDOW_FRACTION * whole.len() as f64 { whole } else { region }
 }
 

@@ -1,11 +1,8 @@
 //! Balance of force and moments on the active set.
 
-use super::{ActiveSet, MAX_MOVED_SHARE, Shape};
+use super::{ActiveSet, RULES, Shape};
 use crate::parallel::for_each_band;
 use crate::solver::{Problem, ResidualSums, Solution, Solve, balance, cold_start, press_everywhere};
-
-/// Share of the force by which a converged pressure may be changed in order to balance it.
-const MAX_CLOSING_CHANGE: f64 = 1e-9;
 
 impl ActiveSet {
     /// Fills the shape of corrections on A.
@@ -33,7 +30,7 @@ impl ActiveSet {
         let pressed: f64 =
             (0..problem.bodies.len()).map(|body| self.set.sum(problem, body, &solve.solution.pressure)).sum();
         let all = if self.changes.leaving { problem.rows().sum(&solve.solution.pressure) } else { pressed };
-        self.changes.moves = self.changes.leaving && (all - pressed).abs() < MAX_MOVED_SHARE * pressed;
+        self.changes.moves = self.changes.leaving && (all - pressed).abs() < RULES.moved_share * pressed;
         let carried = if self.changes.moves { all } else { pressed };
         if !single || problem.bodies[0].tilts() {
             self.fill_shape(shape, solve.solution);
@@ -89,14 +86,14 @@ impl ActiveSet {
     /// change v. False if it is more than rounding.
     pub(super) fn close_balance(&mut self, solve: &mut Solve<'_>) -> bool {
         let Solve { problem, ref stop, ref mut solution, .. } = *solve;
+        let is_small = |change: f64, carried: f64| change <= 1e-9 * carried;
         problem.loaded_bodies().all(|body| {
             let modes = problem.modes(body);
             if !modes.freedom.tilts() {
                 let sum = |solution: &Solution| self.set.sum(problem, body, &solution.pressure);
                 let carried = sum(solution);
                 let closed = balance(problem, body, &self.set, solution);
-                return !modes.freedom.translation
-                    || closed && (sum(solution) - carried).abs() <= MAX_CLOSING_CHANGE * carried;
+                return !modes.freedom.translation || closed && is_small((sum(solution) - carried).abs(), carried);
             }
             let before = &mut self.buffer;
             before.copy_from_slice(&solution.pressure);
@@ -106,7 +103,7 @@ impl ActiveSet {
             let change = |k: usize| (solution.pressure[k] - before[k]).abs();
             let changed = if closed { self.set.sum_of(problem, body, change) } else { carried };
             if modes.freedom.translation {
-                return closed && changed <= MAX_CLOSING_CHANGE * carried;
+                return closed && is_small(changed, carried);
             }
             // without a prescribed force, the whole pressure may be rounding: no cell moves more than by this
             let kernel = problem.kernel;

@@ -12,11 +12,8 @@
 //! p = 0, which does not change E. E falls from step to step, so that no set returns.
 
 use super::iteration::Towards;
-use super::{ActiveSet, JOIN_OVER_RMS};
+use super::{ActiveSet, RULES};
 use crate::solver::{Outcome, Problem, ResidualSums, Solution, Solve, add, make_feasible};
-
-/// Number of times that cells may join A without a gain in between; then the remaining residual is rounding.
-const MAX_JOINS_WITHOUT_GAIN: usize = 3;
 
 /// The best step along a direction.
 #[derive(Debug, Clone, Copy, Default)]
@@ -55,12 +52,12 @@ impl ActiveSet {
             if let Some(outcome) = stop.outcome(solve.solution, || true) {
                 return Ok(outcome);
             }
-            let penetrates = state.penetration > JOIN_OVER_RMS * state.rms();
+            let penetrates = state.penetration > RULES.join_over_rms * state.rms();
             // cells at zero that blocked the step have left; where they joined again before any gain, they would
             // block the next
             if penetrates && !blocked {
                 joins_without_gain = if gained { 0 } else { joins_without_gain + 1 };
-                if joins_without_gain > MAX_JOINS_WITHOUT_GAIN {
+                if joins_without_gain > RULES.tries_without_gain {
                     return Ok(Outcome::Stagnated);
                 }
                 gained = false;

@@ -1,23 +1,7 @@
 //! One iteration of the active set: its residual, its direction and its length.
 
-use super::{ActiveSet, CORRECTION_LENGTH, JOIN_OVER_RMS};
+use super::{ActiveSet, RULES};
 use crate::solver::{ModeCoefficients, Outcome, Problem, ResidualSums, Solution, Solve, add, dot};
-
-/// Σ (r − mean)² is computed afresh, not from Σ r², where less than this fraction of Σ r² is left.
-const MIN_CENTRED_FRACTION: f64 = 1e-6;
-
-/// Penetration outside is computed anew where the motion of a tilting body has changed by more than this fraction of
-/// rms |r| since the penetration was computed.
-const MAX_TURN_OVER_RMS: f64 = 1e-6;
-
-/// Iterations without a new lowest residual after which no correction follows another one: a search comes between them.
-const MAX_CORRECTIONS_WITHOUT_GAIN: usize = 3;
-
-/// Fraction of the deepest penetration that counts as the deepest.
-const DEEPEST: f64 = 0.999;
-
-/// Iterations without a new lowest residual after which the fall-back takes over.
-const MAX_ITERATIONS_WITHOUT_GAIN: usize = 40;
 
 /// The vector z of a direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,7 +24,7 @@ impl ActiveSet {
         let (mut lowest, mut without_gain, mut step, mut searched) = (f64::INFINITY, 0, 0.0, 0.0);
         loop {
             let mut state = self.advance(problem, solve.solution, step);
-            let aggressive = without_gain <= MAX_CORRECTIONS_WITHOUT_GAIN || searched != 0.0 || step == 0.0;
+            let aggressive = without_gain <= RULES.tries_without_gain || searched != 0.0 || step == 0.0;
             if state.negative > 0.0 && self.should_remove_tensile(problem, stop, state, aggressive) {
                 self.remove_tensile_cells(searched, solve)?;
                 state = self.advance(problem, solve.solution, 0.0);
@@ -59,16 +43,16 @@ impl ActiveSet {
             }
             without_gain = if solve.solution.residual < lowest { 0 } else { without_gain + 1 };
             lowest = lowest.min(solve.solution.residual);
-            if without_gain > MAX_ITERATIONS_WITHOUT_GAIN {
+            if without_gain > RULES.iterations_without_gain {
                 return Ok(Outcome::Stagnated);
             }
             // do not test the predicted set at iteration 0: it has no pressure yet
             let predicted = problem.likely.is_some() && solve.solution.counts.iterations == 0;
             // only small pressures that leave remain to be removed
             let solved = solve.solution.residual <= stop.tolerance && self.changes.any();
-            if state.penetration > JOIN_OVER_RMS * state.rms() && !predicted && !solved {
+            if state.penetration > RULES.join_over_rms * state.rms() && !predicted && !solved {
                 let was_cut = std::mem::take(&mut self.was_cut);
-                let least = if was_cut { DEEPEST * state.penetration } else { state.joining_depth() };
+                let least = if was_cut { 0.999 * state.penetration } else { state.joining_depth() };
                 self.add_penetrating_cells(problem, least, solve.solution);
                 self.advance(problem, solve.solution, 0.0);
             }
@@ -111,10 +95,11 @@ impl ActiveSet {
             state.penetration = state.penetration.max(found.penetration + if tilts { 0.0 } else { moved });
         }
         // where a motion was far off, the difference is mostly rounding
-        if state.square < MIN_CENTRED_FRACTION * square {
+        if state.square < 1e-6 * square {
             [state.square, state.deepest] = self.find_residual(problem, solution);
         }
-        if turned > MAX_TURN_OVER_RMS * state.rms() {
+        // the penetration was found at a motion of a tilting body that has changed since
+        if turned > 1e-6 * state.rms() {
             state.penetration = self.set.passes(problem, &mut self.bands).penetration(solution);
             [_, state.deepest] = self.find_residual(problem, solution);
         }
@@ -131,7 +116,7 @@ impl ActiveSet {
     pub(super) fn find_direction(&mut self, towards: Towards, solve: &mut Solve<'_>) {
         let Solve { problem, solution, work, .. } = solve;
         // no longer than the last search: where M is too great an inverse, a longer one would not lower the residual
-        let length = CORRECTION_LENGTH.min(self.search_length) / problem.compliance;
+        let length = RULES.correction_length.min(self.search_length) / problem.compliance;
         let pending = self.changes.any();
         if towards != Towards::Corrections {
             self.find_residual(problem, solution);

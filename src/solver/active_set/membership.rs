@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::{ActiveSet, LEAVE_OVER_RMS, Shape};
+use super::{ActiveSet, RULES, Shape};
 use crate::parallel::for_each_band;
 use crate::solver::{ContactSet, Passes, Problem, ResidualSums, Search, Solution, Solve, Stop, add, cold_start};
 
@@ -66,7 +66,8 @@ impl ActiveSet {
     ) -> bool {
         let equivalent_gap = problem.compliance / self.preconditioner.diagonal;
         let solved = state.square <= stop.tolerance * stop.tolerance * state.displacement;
-        let large = equivalent_gap * equivalent_gap * state.negative > LEAVE_OVER_RMS * LEAVE_OVER_RMS * state.square;
+        let least = RULES.leave_over_rms * RULES.leave_over_rms * state.square;
+        let large = equivalent_gap * equivalent_gap * state.negative > least;
         solved || aggressive && large
     }
 

@@ -12,12 +12,11 @@
 //! An iteration costs one convolution, whatever happens to A:
 //!
 //! * Cells that penetrate join with p = 0, which changes no field. They do so when the penetration is large compared
-//!   with the residual ([`JOIN_OVER_RMS`]).
-//! * Cells whose pressure is negative leave when their error is large compared with the residual
-//!   ([`LEAVE_OVER_RMS`]). The *next* direction brings them to p = 0: it contains δ = −p on them, so that the
-//!   convolution it needs anyway updates v. Its length is then 1, and z enters it with the usual length
-//!   ([`CORRECTION_LENGTH`]). Eᵀ moves their pressure to the cells around, which keeps the force. Cells whose
-//!   pressure becomes negative by the move leave with them.
+//!   with the residual ([`Rules`]).
+//! * Cells whose pressure is negative leave when their error is large compared with the residual. The *next*
+//!   direction brings them to p = 0: it contains δ = −p on them, so that the convolution it needs anyway updates v. Its
+//!   length is then 1, and z enters it with the usual length. Eᵀ moves their pressure to the cells around, which keeps
+//!   the force. Cells whose pressure becomes negative by the move leave with them.
 //! * Where the force is out of balance, p and v are scaled together. With moments to balance, or several bodies, the
 //!   correction B y times a shape differs from cell to cell, and joins the next direction too.
 //! * A guess extrapolated from earlier steps comes with its own v.
@@ -31,23 +30,36 @@ mod iteration;
 mod membership;
 
 use crate::kernel::{LocalKernel, Workspace};
-use crate::solver::{Bands, ContactSet, ModeCoefficients, Outcome, PENETRATION_SLACK, Preconditioner, Search, Solve};
+use crate::solver::{Bands, ContactSet, ModeCoefficients, Outcome, Preconditioner, Search, Solve};
 use crate::sum::greatest;
 
-/// Cells join A when the deepest penetration exceeds this many times rms |r|. It must be below the
-/// slack that the residual grants to penetration, or a state could neither improve nor converge.
-const JOIN_OVER_RMS: f64 = 0.2 * PENETRATION_SLACK;
+/// When A changes, and when the search for it ends.
+struct Rules {
+    /// Cells join A when the deepest penetration exceeds this many times rms |r|. It must be below the
+    /// [slack](crate::solver::PENETRATION_SLACK) of penetration, or a state could neither improve nor converge.
+    join_over_rms: f64,
+    /// Cells leave A when rms (c p⁻/m), the gap equivalent to their negative pressure, exceeds this part of rms |r|.
+    leave_over_rms: f64,
+    /// c a of a direction that corrects the pressure and has no line search, unless the last search was shorter.
+    correction_length: f64,
+    /// Pressures that leave are moved to the cells around. Pressures that carry more than this part of the force are
+    /// dropped instead: the contact is another one.
+    moved_share: f64,
+    /// So often cells that join, or corrections that follow one another, may bring no gain or no lowest residual. Then
+    /// the rest is rounding, or a search comes between.
+    tries_without_gain: usize,
+    /// Iterations without a new lowest residual after which the fall-back takes over.
+    iterations_without_gain: usize,
+}
 
-/// Cells leave A when rms (c p⁻/m), the gap equivalent to their negative pressure, exceeds this
-/// fraction of rms |r|.
-const LEAVE_OVER_RMS: f64 = 0.1;
-
-/// c a of a direction that corrects the pressure and has no line search, unless the last search was shorter.
-const CORRECTION_LENGTH: f64 = 0.9;
-
-/// Pressures that leave are moved to the cells around. Pressures that carry more than this part of the force are
-/// dropped instead: the contact is another one.
-const MAX_MOVED_SHARE: f64 = 0.1;
+const RULES: Rules = Rules {
+    join_over_rms: 2.0,
+    leave_over_rms: 0.1,
+    correction_length: 0.9,
+    moved_share: 0.1,
+    tries_without_gain: 3,
+    iterations_without_gain: 40,
+};
 
 #[derive(Debug, Clone)]
 pub(crate) struct ActiveSet {

@@ -95,18 +95,14 @@ struct Level {
     local: Option<Vec<f64>>,
 }
 
-/// Maximum number of levels of which a rank holds the local rows alone: blocks of the next level are as high as a
-/// band.
-const MOST_LOCAL: usize = 3;
-
 /// Number of levels over so many cells: the last one is a single block.
 fn count_levels(cells: [usize; 2]) -> usize {
     cells[0].max(cells[1]).next_power_of_two().ilog2() as usize
 }
 
-/// Whether a rank holds the local rows alone of blocks of this height.
+/// Whether a rank holds the local rows alone of blocks of this height: of those beyond 3 each is as high as a band.
 fn is_local(rows: &Rows, height: usize) -> bool {
-    rows.are_shared() && height <= MOST_LOCAL && height < count_levels(rows.cells())
+    rows.are_shared() && height <= 3 && height < count_levels(rows.cells())
 }
 
 /// The rows of blocks of this height in rows of cells.

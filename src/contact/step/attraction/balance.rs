@@ -3,15 +3,10 @@
 use super::AttractedStep;
 use crate::equilibrium::window::Window;
 use crate::kernel::{Mean, PeriodInverse};
-use crate::linalg::solve_normal_equations;
+use crate::linalg::{DEPENDENT, solve_normal_equations};
 use crate::load::Load;
 use crate::parallel::Rows;
 use crate::solver::Counts;
-
-/// Maximum number of shifts that bring a mean to its value.
-const SHIFTS: usize = 48;
-/// A mode that depends on the others to this part of its square is left out.
-const DEPENDENT: f64 = 1e-11;
 
 /// The equations of a step: q = M x/c + p, where M gives the mean its stiffness.
 pub(super) struct Balance {
@@ -157,7 +152,7 @@ impl Balance {
         let scale: f64 = rows.sum_of_pairs(x, x, |x, _| x.abs()) * 1e-14 + f64::MIN_POSITIVE;
         // cells at the wall stay there, unless no other is left
         let (mut shift, mut lifts) = (0.0, false);
-        for _ in 0..SHIFTS {
+        for _ in 0..48 {
             let [sum, free] = rows.sum_terms(|k| {
                 let h = gap[k] + x[k];
                 let moves = (lifts || h > 0.0) && h + shift > 0.0;

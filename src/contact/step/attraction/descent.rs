@@ -25,34 +25,63 @@ use crate::load::Load;
 use crate::parallel::for_each_band;
 use crate::solver::Solution;
 
-/// Maximum number of iterations.
-const MAX_ITERATIONS: usize = 2000;
-/// A step that raises E is shortened by this factor, so many times.
-const SHORTER: f64 = 0.4;
-const SHORTENINGS: usize = 12;
-/// Rounding of E, over the sum of its parts.
-const ROUNDING: f64 = 1e-13;
-/// At this curvature over the curvature of the convex part the tolerance of r is what was asked; below, r is to be
-/// smaller by the same factor, since the error is r over the curvature. The least of so many iterations counts.
-const SOFT: f64 = 0.2;
-const REMEMBERED: usize = 8;
-/// A mode that is soft shows in the curvature once stiff ones are out of r: after so many iterations.
-const LEAST_MEASURED: usize = 3;
-const SMALLEST: f64 = 1e-3;
-/// Before any iteration r may be smooth, as what the far field has left is, and is worth more: it is to be smaller by
-/// this factor.
-const SMOOTH: f64 = 0.1;
-/// Where the curvature was less than this along some direction, the softest one is looked for before the step ends;
-/// and so often at most, as long as it is softer than this at its end. Where the state before was stiffer than this,
-/// and the attraction no steeper since, none is looked for.
-const SUSPECT: f64 = 0.85;
-const VERY_SOFT: f64 = 0.005;
-const NEAR_FOLD: f64 = 0.25;
-const LOOKS: usize = 4;
-/// A state whose energy bends down by more than this is none.
-const UNSTABLE: f64 = -1e-5;
-/// Bodies without contact whose attraction carries this part of the load, or less, fly apart.
-const CARRIED: f64 = 0.5;
+/// The numbers of a descent, and of its softest direction; curvatures are over those of the convex part. They were
+/// chosen on `ADHESION_FOLDS`, `ADHESION_SCENES` and the steps of `adhesion_work`: what each changes there is in
+/// docs/maintainers/tuned_numbers.md.
+pub(super) struct Numbers {
+    /// A descent ends where r, over the maximum traction, by which the force errs, is below so many tolerances of the
+    /// solver, but no more than this, unless the tolerance is coarse: then below this part of it.
+    tolerances: f64,
+    most_left: f64,
+    part_left: f64,
+    /// At this curvature r may be what was asked; below, it is to be smaller by the same factor, as far as a
+    /// thousandth, since the error is r over the curvature.
+    soft: f64,
+    /// Before any iteration r may be smooth, as what the far field has left is, and is worth more: it is to be smaller
+    /// by this factor.
+    smooth: f64,
+    /// The softest direction is looked for before the step ends, unless the state before was stiffer than this, and
+    /// the attraction no steeper since; and so often at most, as long as it is softer than this at its end.
+    near_fold: f64,
+    looks: usize,
+    very_soft: f64,
+    /// A state whose energy bends down by more than this is none.
+    unstable: f64,
+    /// Where r is less, over the maximum traction, a step of negative curvature leads to the first minimum; else it has
+    /// the length of so many steps of the convex part.
+    pub(super) near: f64,
+    pub(super) longest: f64,
+    /// What a line search leaves of the slope, and how often it tries.
+    pub(super) slope_left: f64,
+    pub(super) tries: usize,
+    /// The maximum change of the gap at first on the way from a state that is unstable, in ranges.
+    pub(super) span: f64,
+    /// The softest direction is looked for until its curvature is below this, or known to this part of it, and a
+    /// direction of curvature 1 would have grown by half this power of e beyond it.
+    pub(super) negative: f64,
+    pub(super) precise: f64,
+    pub(super) grown: f64,
+}
+
+pub(super) const NUMBERS: Numbers = Numbers {
+    tolerances: 100.0,
+    most_left: 1e-4,
+    part_left: 0.3,
+    soft: 0.2,
+    smooth: 0.1,
+    near_fold: 0.25,
+    looks: 4,
+    very_soft: 0.005,
+    unstable: -1e-5,
+    near: 0.1,
+    longest: 4.0,
+    slope_left: 0.1,
+    tries: 10,
+    span: 0.03,
+    negative: -1e-2,
+    precise: 0.2,
+    grown: 8.0,
+};
 
 /// An energy over the area of a cell.
 #[derive(Clone, Copy)]
@@ -89,9 +118,8 @@ struct Trail {
     energy: Energy,
     /// y·r of the last direction, to which the next one is conjugate; 0 where it is to none.
     last: f64,
-    /// Curvatures along the last directions, and the least along any.
-    recent: [f64; REMEMBERED],
-    least: f64,
+    /// Curvatures along the last directions.
+    recent: [f64; 8],
     /// The curvature along the softest direction, where it was looked for, and how often it was.
     softest: Option<f64>,
     looks: usize,
@@ -117,14 +145,13 @@ enum Place {
 impl AttractedStep<'_> {
     /// The largest |r| that ends a descent, over the maximum traction: the error is r over the curvature.
     pub(super) fn tolerance(&self, softness: f64) -> f64 {
-        self.limit() * (softness / SOFT).clamp(SMALLEST, 1.0)
+        self.limit() * (softness / NUMBERS.soft).clamp(1e-3, 1.0)
     }
-}
 
-impl Trail {
-    fn note(&mut self, curvature: f64) {
-        self.recent[self.iteration % REMEMBERED] = curvature;
-        self.least = self.least.min(curvature);
+    /// The change of s over the maximum traction that ends a step.
+    pub(super) fn limit(&self) -> f64 {
+        let tolerance = self.stop.tolerance;
+        (NUMBERS.tolerances * tolerance).min((NUMBERS.part_left * tolerance).max(NUMBERS.most_left))
     }
 }
 
@@ -132,7 +159,7 @@ impl Descent<'_> {
     /// Finishes z, s and K (z − s) of the trial from their guess, in the gap of the trial.
     pub(super) fn run(&mut self) -> Result<()> {
         let mut trail = self.begin();
-        for iteration in 0..=MAX_ITERATIONS {
+        for iteration in 0..=2000 {
             trail.iteration = iteration;
             let mut gradient = self.gradient();
             self.may_go_on(gradient, trail.energy)?;
@@ -150,18 +177,19 @@ impl Descent<'_> {
                     (self.length(gradient), Some(steepest))
                 }
             };
-            trail.note(along.curvature);
+            let last = iteration % trail.recent.len();
+            trail.recent[last] = along.curvature;
             trail.last = match (self.go(along, &mut trail), steepest) {
                 (true, steepest) => steepest.unwrap_or(0.0),
                 (false, Some(_)) if trail.last > 0.0 => 0.0,
                 (false, Some(_)) => break,
                 (false, None) => {
                     // a state, or a mix of directions at a corner of the law
-                    trail.recent[iteration % REMEMBERED] = 1.0;
+                    trail.recent[last] = 1.0;
                     continue;
                 }
             };
-            self.follow_front(&mut trail, gradient);
+            self.follow_front(&mut trail);
         }
         let change = self.gradient().greatest;
         Err(self.problem.not_converged(self.own, change))
@@ -177,10 +205,9 @@ impl Descent<'_> {
             iteration: 0,
             energy: self.energy(),
             last: 0.0,
-            recent: [1.0; REMEMBERED],
-            least: 1.0,
+            recent: [1.0; 8],
             softest: self.own.softest,
-            looks: if self.own.looks { 0 } else { LOOKS },
+            looks: if self.own.looks { 0 } else { NUMBERS.looks },
             front: Front::new(held.region.cells(), held.region.folded()),
         }
     }
@@ -188,22 +215,22 @@ impl Descent<'_> {
     /// Decides what the point is. Near a state that may be unstable it looks for the softest direction.
     fn look(&mut self, trail: &mut Trail, gradient: &mut Gradient) -> Place {
         let recent = trail.recent.iter().fold(1.0_f64, |least, &soft| least.min(soft));
-        let soft = if trail.iteration < LEAST_MEASURED { self.own.softness } else { recent };
+        let soft = if trail.iteration == 0 { self.own.softness } else { recent };
         let soft = soft.min(trail.softest.unwrap_or(1.0));
-        let share = if trail.iteration == 0 { SMOOTH } else { 1.0 };
+        let share = if trail.iteration == 0 { NUMBERS.smooth } else { 1.0 };
         if gradient.greatest > share * self.problem.tolerance(soft) {
             return Place::Slope;
         }
         let stiffness = trail.softest.unwrap_or_else(|| self.least_stiffness());
         let is_suspect = match trail.softest {
-            Some(_) => stiffness < VERY_SOFT && self.ends(*gradient, soft),
-            None => (trail.least < SUSPECT || trail.iteration < LEAST_MEASURED) && stiffness < NEAR_FOLD,
+            Some(_) => stiffness < NUMBERS.very_soft && self.ends(*gradient, soft),
+            None => stiffness < NUMBERS.near_fold,
         };
-        if is_suspect && trail.looks < LOOKS {
+        if is_suspect && trail.looks < NUMBERS.looks {
             let curvature = self.soften(trail.looks);
             trail.looks += 1;
             (*gradient, trail.energy, trail.last) = (self.gradient(), self.energy(), 0.0);
-            if curvature < UNSTABLE {
+            if curvature < NUMBERS.unstable {
                 trail.softest = None;
                 return Place::Saddle(Along { length: self.way_out(*gradient), curvature });
             }
@@ -233,8 +260,9 @@ impl Descent<'_> {
         if stop.cancelled.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
             return Err(Error::Cancelled { what: "a step" });
         }
+        // bodies without contact whose attraction carries less than half of the load fly apart
         let (pull, by_force) = (-wanted.total, matches!(step.loads[0], Load::Force { .. }));
-        if by_force && pull > 0.0 && gradient.at_wall == 0.0 && gradient.attraction <= CARRIED * pull {
+        if by_force && pull > 0.0 && gradient.at_wall == 0.0 && gradient.attraction <= 0.5 * pull {
             return Err(Error::PulledOff { time, force: -pull * state.held.region.cell_area() });
         }
         Ok(())
@@ -243,18 +271,19 @@ impl Descent<'_> {
     /// Goes along the direction as far as E falls; returns whether it does.
     fn go(&mut self, along: Along, trail: &mut Trail) -> bool {
         let mut length = along.length;
-        for _ in 0..if length > 0.0 { SHORTENINGS } else { 0 } {
+        for _ in 0..if length > 0.0 { NUMBERS.tries } else { 0 } {
             self.go_along(length);
             let tried = self.swap();
             let rise = (tried.value - trail.energy.value) / trail.energy.scale;
-            if rise <= ROUNDING {
-                self.own.report.rise = self.own.report.rise.max(rise - ROUNDING);
+            // but for rounding
+            if rise <= 1e-13 {
+                self.own.report.rise = self.own.report.rise.max(rise - 1e-13);
                 trail.energy = tried;
                 return true;
             }
             self.own.report.rejected += 1;
             self.swap();
-            length *= SHORTER;
+            length *= 0.5;
         }
         false
     }
@@ -277,11 +306,11 @@ impl Descent<'_> {
     }
 
     /// Keeps r for the next direction, and tries the profile beside a running edge further on, where E falls.
-    fn follow_front(&mut self, trail: &mut Trail, gradient: Gradient) {
+    fn follow_front(&mut self, trail: &mut Trail) {
         self.own.in_gap.traction.copy_from_slice(&self.trial.solution.pressure);
         let Trial { gap, solution, .. } = &*self.trial;
         let x = &solution.potential;
-        let moved = trail.front.look(gradient.greatest, gap.len(), |k| gap[k] + x[k] <= 0.0);
+        let moved = trail.front.look(gap.len(), |k| gap[k] + x[k] <= 0.0);
         let Some(moved) = moved else { return };
         let tried = self.move_front(&moved);
         let falls = tried.value < trail.energy.value;

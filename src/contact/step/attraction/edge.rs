@@ -8,19 +8,12 @@ use crate::error::{Refusal, Result};
 use crate::rounded::{TIME, rounded};
 use crate::solver::Solution;
 
-/// Attraction beyond the edge that pulls by more than this part of the force is refused, and warned of from this
-/// part, or the tolerance of the solver, on.
-const MOST: f64 = 0.05;
-const LEAST: f64 = 1e-3;
-/// The rate at which attraction falls towards an edge is taken over this part of the grid.
-const PART: usize = 16;
-
 /// The force that the attraction beyond the edge of the grid would add, over the sum of the tractions on the grid, or
 /// over the work of separation of a length of the grid where this is more: about the force that pulls off a ball of
 /// its size.
 ///
-/// Over the lines of cells beside an edge the attraction falls at some rate, at which it is continued, over no more
-/// than half a length of the grid: a surface that stays as near ends somewhere.
+/// Over the lines of a sixteenth of the grid beside an edge the attraction falls at some rate, at which it is
+/// continued, over no more than half a length of the grid: a surface that stays as near ends somewhere.
 pub(super) fn attraction_beyond(scene: &Scene, law: &dyn Attraction, region: &Region, solution: &Solution) -> f64 {
     let (s, mut beyond) = (&solution.attraction, 0.0);
     let (cells, rows, periodic) = (region.cells(), region.rows(), scene.ground.kernel.periodic_axes());
@@ -29,7 +22,7 @@ pub(super) fn attraction_beyond(scene: &Scene, law: &dyn Attraction, region: &Re
             let on_line = |k: usize| [k / cells[1], k % cells[1]][axis] == at;
             rows.sum_terms(|k| on_line(k).then(|| [s[k]]))[0]
         };
-        let (last, inwards) = (cells[axis] - 1, (scene.ground.grid.cells()[axis] / PART).max(1).min(cells[axis] - 1));
+        let (last, inwards) = (cells[axis] - 1, (scene.ground.grid.cells()[axis] / 16).max(1).min(cells[axis] - 1));
         let high = (last, last - inwards);
         // the cells of a folded axis begin at its middle
         let low = (!region.folded()[axis]).then_some((0, inwards));
@@ -49,15 +42,16 @@ pub(super) fn attraction_beyond(scene: &Scene, law: &dyn Attraction, region: &Re
 }
 
 impl Attracted {
-    /// The part of the force that is left out beyond the edge, where it is warned of.
+    /// The part of the force that is left out beyond the edge, where it is more than a thousandth, or than the
+    /// tolerance of the solver.
     pub(in crate::contact::step) fn beyond_edge(&self, scene: &Scene) -> Option<f64> {
-        Some(self.report.beyond_edge).filter(|share| *share > LEAST.max(scene.ground.settings.tolerance))
+        Some(self.report.beyond_edge).filter(|share| *share > f64::max(1e-3, scene.ground.settings.tolerance))
     }
 
     /// Refuses a step that leaves out too much.
     pub(in crate::contact::step) fn check_edge(&self, scene: &Scene, step: &Step<'_>) -> Result<()> {
         let (ground, share) = (&scene.ground, self.report.beyond_edge);
-        if ground.settings.edge == Edge::Refuse && share > MOST {
+        if ground.settings.edge == Edge::Refuse && share > 0.05 {
             let (time, lengths) = (step.interval.time, ground.grid.lengths());
             let what = format!(
                 "at t = {} s the attraction beyond the edge of the grid of {} × {} m would add {:.0} % of the force, \

@@ -2,15 +2,11 @@
 
 use super::balance::Operators;
 use super::descent::{Descent, Energy};
-use super::{Attracted, AttractedStep};
+use super::{Attracted, AttractedStep, PassReport};
 use crate::equilibrium::Equilibrium;
 use crate::equilibrium::Trial;
 use crate::load::Load;
 use crate::solver::{RigidMotion, Solution};
-
-/// Jumps release more than this part of the energy, and of the work of separation of so many cells.
-const LEAST_RELEASED: f64 = 1e-3;
-const CELLS: f64 = 10.0;
 
 impl AttractedStep<'_> {
     /// The energy of a state with the free motion `motion`, from z − s, K (z − s), the gap and the work of the wall of
@@ -108,7 +104,7 @@ impl AttractedStep<'_> {
         report.released = self.state.held.region.cell_area() * (before.value - now.value);
         report.unaccounted = report.released - 0.5 * self.state.held.region.cell_area() * (convex + softened);
         report.bend = 1.0 + softened / convex;
-        let much = LEAST_RELEASED * now.scale.max(CELLS * self.law.energy(0.0));
+        let much = PassReport::noticed(now.scale, self.law.energy(0.0));
         report.suspected = report.may_jump(self.state.held.region.cell_area() * much) && !self.is_first(trial);
     }
 }

@@ -1,17 +1,8 @@
 //! The edge of a line contact that runs over many cells within a step.
 //!
 //! An iteration in the gap moves a running edge by about the zone in which the attraction acts. Where cells were lost
-//! several times while the residual did not fall, the profile beside the edge is tried further on: by the cells just
-//! lost, after each success by twice as many, and by at most an eighth of the cells that are left, since the edge may
-//! stop. The trial is kept where the energy falls.
-
-/// Losses count anew where the residual falls to this part, or below so much of the maximum traction.
-const FALLEN: f64 = 0.3;
-const FINE: f64 = 0.01;
-/// The part of the contact by which each edge is moved at most.
-const MOST: usize = 16;
-/// Losses while the residual does not fall, before the edge is moved on, and between a failure and the next trial.
-const LOSSES: usize = 3;
+//! the profile beside the edge is tried further on: by the cells just lost, after each success by twice as many, and by
+//! at most an eighth of the cells that are left, since the edge may stop. The trial is kept where the energy falls.
 
 /// How the edge has moved so far.
 #[derive(Debug, Clone, Copy)]
@@ -20,9 +11,6 @@ pub(super) struct Front {
     is_line: bool,
     folded: bool,
     touching: usize,
-    /// How often cells were lost while the residual did not fall, or since a failure.
-    losses: usize,
-    residual: f64,
     span: usize,
 }
 
@@ -36,24 +24,18 @@ pub(super) struct Moved {
 impl Front {
     pub(super) fn new(cells: [usize; 2], folded: [bool; 2]) -> Front {
         let (is_line, folded) = (cells.contains(&1), folded[usize::from(cells[0] == 1)]);
-        Front { is_line, folded, touching: 0, losses: 0, residual: 0.0, span: 1 }
+        Front { is_line, folded, touching: 0, span: 1 }
     }
 
-    /// Looks at the residual, over the maximum traction, and at which cells touch; returns how the profile is to be
-    /// moved.
-    pub(super) fn look(&mut self, residual: f64, cells: usize, touches: impl Fn(usize) -> bool) -> Option<Moved> {
+    /// Looks at which cells touch; returns how the profile is to be moved.
+    pub(super) fn look(&mut self, cells: usize, touches: impl Fn(usize) -> bool) -> Option<Moved> {
         if !self.is_line {
             return None;
         }
-        if residual < FINE || residual < FALLEN * self.residual {
-            (self.losses, self.residual) = (0, residual);
-        }
-        self.residual = self.residual.max(residual);
         let in_contact = || (0..cells).filter(|&k| touches(k));
         let touching = in_contact().count();
         let lost = std::mem::replace(&mut self.touching, touching).saturating_sub(touching);
-        self.losses += usize::from(lost > 0);
-        if lost == 0 || self.losses < LOSSES {
+        if lost == 0 {
             return None;
         }
         let mut parts: Vec<(usize, usize)> = Vec::new();
@@ -67,18 +49,13 @@ impl Front {
         let of_part = |&(first, end): &(usize, usize)| if at_mirror(first) { 2 * end } else { end - first };
         let longest = parts.iter().map(of_part).max()?;
         let middle = |&(first, end): &(usize, usize)| if at_mirror(first) { -0.5 } else { 0.5 * (first + end) as f64 };
-        let by = (lost.div_ceil(2 * parts.len()) * self.span).min(longest / MOST).max(1);
+        let by = (lost.div_ceil(2 * parts.len()) * self.span).min(longest / 16).max(1);
         Some(Moved { by, middles: parts.iter().map(middle).collect() })
     }
 
     /// Takes note of whether the profile that was moved is kept.
     pub(super) fn learn(&mut self, kept: bool) {
-        if kept {
-            self.span *= 2;
-        } else {
-            self.span = (self.span / 2).max(1);
-            self.losses = 0;
-        }
+        self.span = if kept { 2 * self.span } else { (self.span / 2).max(1) };
     }
 }
 

@@ -1,7 +1,7 @@
 //! Gradient, direction and length of an iteration in the gap.
 
 use super::balance::Operators;
-use super::descent::{Along, Descent, Gradient};
+use super::descent::{Along, Descent, Gradient, NUMBERS};
 use super::passes::InGap;
 use super::softest::{Convex, softest};
 use crate::attraction::Attraction;
@@ -9,19 +9,6 @@ use crate::parallel::for_each_band;
 use crate::solver::Solution;
 use crate::sum::scattered;
 
-/// Least curvature of E along a direction, over the curvature of its convex part.
-const LEAST_CURVATURE: f64 = 1e-3;
-/// Where the largest |r| is a smaller part of the maximum traction, a step of negative curvature leads to the first
-/// minimum; else it has the length of so many steps of the convex part.
-const NEAR: f64 = 0.1;
-const LONGEST: f64 = 4.0;
-/// What a line search leaves of the slope, and how often it tries.
-const SLOPE_LEFT: f64 = 0.1;
-const TRIES: usize = 10;
-/// A direction descends by this part of the steepest one, or the search begins anew.
-const LEAST_DESCENT: f64 = 1e-3;
-/// The maximum change of the gap at first on the way from a state that is unstable, in ranges.
-const SPAN: f64 = 0.03;
 /// Curvature is measured by a change of the gap by this part of the range.
 const DIFFERENCE: f64 = 1e-4;
 
@@ -54,7 +41,7 @@ impl Descent<'_> {
         if balance.held {
             // cells at the wall that open join the mean
             let mut joins = f64::NEG_INFINITY;
-            for _ in 0..TRIES {
+            for _ in 0..NUMBERS.tries {
                 let [sum, count] = rows.sum_terms(|k| (is_open(k) || r[k] < joins).then_some([r[k], 1.0]));
                 multiplier = sum / count.max(1.0);
                 if std::mem::replace(&mut joins, multiplier) == multiplier {
@@ -99,7 +86,8 @@ impl Descent<'_> {
         let beta = if before > 0.0 { f64::max((steepest - overlap) / before, 0.0) } else { 0.0 };
         let old = &*direction;
         let [along] = rows.sum_terms(|k| is_free(k).then(|| [r[k] * (beta * old[k] - (y[k] - level))]));
-        let beta = if beta > 0.0 && along < -LEAST_DESCENT * steepest { beta } else { 0.0 };
+        // or the search begins anew
+        let beta = if beta > 0.0 && along < -1e-3 * steepest { beta } else { 0.0 };
         for_each_band([&mut *direction], |first, [direction]| {
             for (d, k) in direction.iter_mut().zip(first..) {
                 let turned = if beta > 0.0 { beta * *d } else { 0.0 } - (y[k] - level);
@@ -138,17 +126,17 @@ impl Descent<'_> {
             })
         });
         let curvature = (convex - softened) / convex;
-        let bends_down = curvature <= LEAST_CURVATURE;
-        let mut length = if bends_down { -LONGEST * start / convex } else { -start / (convex * curvature) };
+        let bends_down = curvature <= 1e-3;
+        let mut length = if bends_down { -NUMBERS.longest * start / convex } else { -start / (convex * curvature) };
         let (mut low, mut high) = (0.0, None);
-        for _ in 0..TRIES {
+        for _ in 0..NUMBERS.tries {
             let at = self.slope(gradient, length) + length * convex;
-            if at.abs() <= SLOPE_LEFT * start.abs() {
+            if at.abs() <= NUMBERS.slope_left * start.abs() {
                 break;
             }
             if at < 0.0 {
                 low = length;
-                if bends_down && gradient.greatest > NEAR {
+                if bends_down && gradient.greatest > NUMBERS.near {
                     break;
                 }
                 length = high.map_or(2.0 * length, |high| 0.5 * (low + high));
@@ -193,8 +181,9 @@ impl Descent<'_> {
         state.held.current.solution.stiffness - most / problem.scene.ground.softening
     }
 
-    /// Looks for the softest direction of the open cells: writes it, with its M d/c, so long that it changes the gap by
-    /// [`SPAN`] ranges, and returns its curvature. It overwrites r, and computes q afresh.
+    /// Looks for the softest direction of the open cells: writes it, with its M d/c, so long that it changes the gap by a
+    /// [part](super::descent::Numbers::span) of the range, and returns its curvature. It overwrites r, and computes q
+    /// afresh.
     ///
     /// The search begins at random: the last direction has the symmetry of the state, and may have none of the one that
     /// breaks it. Each look of a descent begins anew: of two modes that are soft alike the last one has found a mix, and
@@ -215,7 +204,7 @@ impl Descent<'_> {
         operators.tractions(x, q);
         let Some(curvature) = found else { return 1.0 };
         let most = v.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
-        let scale = SPAN * law.range() / most;
+        let scale = NUMBERS.span * law.range() / most;
         v.iter_mut().chain(image).for_each(|value| *value *= scale);
         curvature
     }
@@ -228,7 +217,7 @@ impl Descent<'_> {
         let InGap { direction, image, .. } = &self.own.in_gap;
         let convex = self.operators.rows().sum_of_pairs(direction, image, |d, image| d * image);
         let mut length = 1.0;
-        for _ in 0..TRIES {
+        for _ in 0..NUMBERS.tries {
             if self.slope(gradient, 2.0 * length) + 2.0 * length * convex >= 0.0 {
                 break;
             }

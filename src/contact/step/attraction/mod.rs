@@ -38,17 +38,6 @@ use crate::load::Load;
 use crate::solver::{Counts, Freedom, Stop};
 use edge::attraction_beyond;
 
-/// A step ends where the traction may change, over its maximum value, by less than a limit, by which the force errs: so
-/// many tolerances of the solver.
-const CHANGE: f64 = 100.0;
-/// The limit is no more than this,
-const MOST_CHANGE: f64 = 1e-4;
-/// unless the tolerance is coarse: then it is this part of the tolerance.
-const SHARE: f64 = 0.3;
-/// Traction of a cell that changed by more than this part of the largest in the last step is not extrapolated to the
-/// next.
-const GREATEST_CHANGE: f64 = 0.5;
-
 /// A step of surfaces that attract each other.
 pub(super) struct AttractedStep<'a> {
     pub(super) scene: &'a Scene,
@@ -107,13 +96,14 @@ impl AttractedStep<'_> {
         self.bodies.fill_gap_of_step(initial, &state.history, &state.held.current.solution.pressure, &mut trial.gap);
     }
 
-    /// Writes z, s and K (z − s) extrapolated from the last two states, or of the last state where s has changed much.
+    /// Writes z, s and K (z − s) extrapolated from the last two states, or of the last state where s of a cell has
+    /// changed by more than half of its maximum.
     fn extrapolate(&self, trial: &mut Trial) {
         let (state, step) = (self.state, self.step);
         let (now, before) = (&state.held.current.solution, &state.previous.solution);
         let mut reach = state.held.extrapolation.reach(step.interval.dt);
         let changes = now.attraction.iter().zip(&before.attraction).map(|(now, before)| (now - before).abs());
-        if changes.fold(0.0, f64::max) > GREATEST_CHANGE * self.law.traction(0.0) {
+        if changes.fold(0.0, f64::max) > 0.5 * self.law.traction(0.0) {
             reach = 0.0;
         }
         trial.reach = reach;
@@ -129,12 +119,6 @@ impl AttractedStep<'_> {
         let Load::Spring { stiffness, drive, .. } = self.step.loads[0] else { return };
         let force = self.state.held.region.cell_area() * net_sum(&self.state.held.region.rows(), &trial.solution);
         trial.solution.motions[0].0[0] = drive - self.step.indenter.gap().datum - force / stiffness;
-    }
-
-    /// The change of s over the maximum traction that ends a step.
-    fn limit(&self) -> f64 {
-        let tolerance = self.stop.tolerance;
-        (CHANGE * tolerance).min((SHARE * tolerance).max(MOST_CHANGE))
     }
 }
 

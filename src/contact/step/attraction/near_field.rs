@@ -18,16 +18,18 @@ use crate::parallel::for_each_band;
 use crate::rounded::{TIME, rounded};
 use crate::solver::{Counts, Solution};
 
-/// Rounds end where the new F (z − s) changes s by this part of what the tolerance allows.
-const MOST_CHANGE: f64 = 0.3;
-/// Maximum number of rounds.
-const MAX_ROUNDS: usize = 60;
-/// What a round takes in of a change of F (z − s).
-const RELAXATION: [f64; 2] = [0.1, 3.0];
-/// Rounds may fail where cells that touch, or act with this share of the maximum attraction, span more than this part of
-/// the grid along an axis.
-const LEAST_ACTION: f64 = 0.1;
-const MAX_EXTENT: f64 = 0.8;
+/// How rounds go on, and end.
+struct Rounds {
+    /// Where the new F (z − s) changes s by this part of what the tolerance allows, and after so many.
+    change: f64,
+    most: usize,
+    /// What a round takes in of a change of F (z − s), at least and at most.
+    relaxation: [f64; 2],
+    /// They may fail where cells that act span more than this part of the grid along an axis.
+    extent: f64,
+}
+
+const ROUNDS: Rounds = Rounds { change: 0.3, most: 60, relaxation: [0.1, 3.0], extent: 0.8 };
 
 impl AttractedStep<'_> {
     /// Finishes z, s and K (z − s) of the trial by descents in the gap.
@@ -55,10 +57,11 @@ impl AttractedStep<'_> {
         if self.scene.ground.kernel.periodic_axes() == [false; 2] { 1 } else { 2 }
     }
 
-    /// The maximum distance along an axis between cells that act, over the length of the grid.
+    /// The maximum distance along an axis between cells that touch, or act with a tenth of the maximum attraction, over
+    /// the length of the grid.
     fn extent(&self, trial: &Trial) -> f64 {
         let (region, Solution { pressure, attraction, .. }) = (&self.state.held.region, &trial.solution);
-        let least = LEAST_ACTION * self.law.traction(0.0);
+        let least = 0.1 * self.law.traction(0.0);
         let columns = region.cells()[1];
         let mut ends = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
         for k in (0..pressure.len()).filter(|&k| pressure[k] > 0.0 || attraction[k] > least) {
@@ -94,7 +97,7 @@ impl Descent<'_> {
         }
         self.split();
         let (c, mut last, mut relaxation) = (problem.compliance, f64::INFINITY, None);
-        for _ in 0..MAX_ROUNDS {
+        for _ in 0..ROUNDS.most {
             problem.open_gap(self.operators.window, self.trial);
             for_each_band([&mut self.trial.gap], |first, [gap]| {
                 gap.iter_mut().zip(&self.own.far[first..]).for_each(|(gap, far)| *gap += c * far);
@@ -102,7 +105,7 @@ impl Descent<'_> {
             self.with_near_field(Descent::run)?;
             let ([change, most], next) = self.correct(relaxation);
             let most = c * most * problem.scene.ground.softening / problem.law.traction(0.0);
-            if most <= MOST_CHANGE * problem.tolerance(self.own.softness) {
+            if most <= ROUNDS.change * problem.tolerance(self.own.softness) {
                 self.join();
                 return Ok(());
             }
@@ -110,7 +113,7 @@ impl Descent<'_> {
             self.own.relax(next);
         }
         let share = problem.extent(self.trial);
-        if share <= MAX_EXTENT {
+        if share <= ROUNDS.extent {
             return Err(problem.not_converged(self.own, last));
         }
         let (time, lengths) = (problem.step.interval.time, problem.scene.ground.grid.lengths());
@@ -121,7 +124,7 @@ impl Descent<'_> {
             100.0 * share,
             rounded(lengths[0], 4),
             rounded(lengths[1], 4),
-            100.0 * MAX_EXTENT
+            100.0 * ROUNDS.extent
         );
         let remedy = ": enlarge the grid (beyond a body that ends the gap is infinite), or give a surface that \
             repeats a periodic body";
@@ -165,7 +168,7 @@ impl Descent<'_> {
         }
         let [changed, along, square] = sums;
         let next = relaxation.map_or(1.0, |last| {
-            if square > 0.0 { (-last * along / square).clamp(RELAXATION[0], RELAXATION[1]) } else { last }
+            if square > 0.0 { (-last * along / square).clamp(ROUNDS.relaxation[0], ROUNDS.relaxation[1]) } else { last }
         });
         ([changed, most], next)
     }

@@ -5,8 +5,35 @@ use crate::equilibrium::window::Window;
 use crate::kernel::{LocalKernel, PeriodInverse, Workspace};
 use crate::solver::Solution;
 
-/// Each half of a smooth step releases a quarter of what the whole does, and one half a jump.
-const LEFT_IN_A_HALF: f64 = 0.4;
+/// What tells a jump, chosen on `ADHESION_JUMPS`.
+pub(super) struct Jumps {
+    /// It releases more than this part of the energy, and of the work of separation of so many cells.
+    noticed: f64,
+    cells: f64,
+    /// In it the energy bends up on the way by less than this part of what it would without attraction, and at least
+    /// this part of what is released is unaccounted for.
+    bend: f64,
+    unaccounted: f64,
+    /// Each half of a smooth step releases a quarter of what the whole does, and one half a jump.
+    in_a_half: f64,
+    /// A part of a step with a jump releases more than this share of what the step released.
+    pub(super) in_a_part: f64,
+    /// The shortest parts of a step.
+    pub(super) shortest: f64,
+    /// Tolerance of parts, of which the energy alone is asked.
+    pub(super) tolerance: f64,
+}
+
+pub(super) const JUMPS: Jumps = Jumps {
+    noticed: 1e-3,
+    cells: 10.0,
+    bend: 0.4,
+    unaccounted: 0.3,
+    in_a_half: 0.4,
+    in_a_part: 0.16,
+    shortest: 0.25,
+    tolerance: 1e-2,
+};
 
 /// What a step works in, besides the trial, and how the last step went.
 #[derive(Debug, Clone)]
@@ -81,15 +108,15 @@ pub struct PassReport {
     pub(crate) beyond_edge: f64,
 }
 
-/// In a jump the energy bends up on the way by less than this part of what it would without attraction, and at least
-/// this part of what is released is unaccounted for.
-const LEAST_BEND: f64 = 0.4;
-const UNACCOUNTED: f64 = 0.3;
-
 impl PassReport {
+    /// What counts beside an energy of bodies of this work of separation of a cell.
+    pub(crate) fn noticed(energy: f64, of_cell: f64) -> f64 {
+        JUMPS.noticed * energy.max(JUMPS.cells * of_cell)
+    }
+
     /// Whether the surfaces may have jumped and released more than this \[J\].
     pub(crate) fn may_jump(&self, least: f64) -> bool {
-        self.released > least && self.bend < LEAST_BEND && self.unaccounted > UNACCOUNTED * self.released
+        self.released > least && self.bend < JUMPS.bend && self.unaccounted > JUMPS.unaccounted * self.released
     }
 
     /// The report of a step in two halves, of which this is the second, and of a `whole` that was tried before.
@@ -99,7 +126,7 @@ impl PassReport {
             rejected: first.rejected + self.rejected,
             rise: first.rise.max(self.rise),
             released: first.released + self.released,
-            jumped: whole.suspected && first.released.max(self.released) > LEFT_IN_A_HALF * whole.released,
+            jumped: whole.suspected && first.released.max(self.released) > JUMPS.in_a_half * whole.released,
             suspected: false,
             unaccounted: first.unaccounted + self.unaccounted,
             bend: self.bend,

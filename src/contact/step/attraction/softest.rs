@@ -3,17 +3,8 @@
 //! The quotient of what softens along a direction, Σ w v², and of what the convex part stiffens, Σ v M v, is raised
 //! by conjugate gradients (Bradbury & Fletcher, Numer. Math. 9, 1966).
 
+use super::descent::NUMBERS;
 use crate::parallel::{Rows, for_each_band};
-
-/// The search takes at most so many turns: until the curvature is clearly negative, or known to this part of it.
-const MOST_TURNS: usize = 100;
-const NEGATIVE: f64 = -1e-2;
-const PRECISE: f64 = 0.2;
-/// What rounding leaves of a direction that is exact.
-const EXHAUSTED: f64 = 1e-6;
-/// The search goes on until a direction of quotient 0 would have grown by half this power of e beyond the direction
-/// that is found.
-const GROWN: f64 = 8.0;
 
 /// The convex part of an energy at a state.
 pub(super) trait Convex: Sync {
@@ -79,8 +70,9 @@ impl Quotient {
     /// turn on one of curvature κ.
     fn is_found(&self, left: f64, turn: usize, cells: usize) -> bool {
         let curvature = self.curvature().abs();
-        let grown = 4.0 * curvature.sqrt() * turn as f64 >= 0.5 * (cells as f64).ln() + GROWN;
-        left <= EXHAUSTED || grown && left <= PRECISE * curvature
+        let grown = 4.0 * curvature.sqrt() * turn as f64 >= 0.5 * (cells as f64).ln() + NUMBERS.grown;
+        // of a direction that is exact rounding leaves something
+        left <= 1e-6 || grown && left <= NUMBERS.precise * curvature
     }
 }
 
@@ -101,9 +93,9 @@ pub(super) fn softest(
     turn.iter_mut().for_each(|field| field.fill(0.0));
     let [softened, stiffened] = rows.sum_terms(|k| Some([w[k] * d[k] * d[k], d[k] * image[k]]));
     let (mut quotient, mut before) = (Quotient { softened, convex: stiffened }, 0.0);
-    for count in 0..MOST_TURNS {
+    for count in 0..100 {
         quotient.raise(rows, w, &mut v, &mut turn);
-        if !quotient.is_positive() || quotient.curvature() < NEGATIVE {
+        if !quotient.is_positive() || quotient.curvature() < NUMBERS.negative {
             break;
         }
         let (now, last) = ([&*v[0], &*v[1]], [&*turn[0], &*turn[1]]);

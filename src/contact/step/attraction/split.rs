@@ -5,19 +5,13 @@
 //! looked at: the end of the second is known. A half that is suspected is halved again, as far as to a quarter of the
 //! step.
 
+use super::passes::JUMPS;
 use super::{PassReport, add};
 use crate::contact::{Step, ViscoelasticContact};
 use crate::equilibrium::{Equilibrium, Held};
 use crate::error::{Error, Result};
 use crate::load::Load;
 use crate::solver::{Counts, Solution};
-
-/// The shortest parts of a step.
-const SHORTEST: f64 = 0.25;
-/// A part of a step with a jump releases more than this share of what the step released.
-const LEFT: f64 = 0.16;
-/// Tolerance of parts, of which the energy alone is asked.
-const COARSE: f64 = 1e-2;
 
 impl ViscoelasticContact {
     /// How the passes of the step tried last went; `None` without attraction, and before the first step.
@@ -95,7 +89,7 @@ impl JumpSearch<'_> {
         let left = step.interval.time - begun;
         let time = if to == 1.0 { step.interval.time } else { begun + left * part / (1.0 - from) };
         let loads = [self.start.towards(&step.loads[0], to)];
-        let tolerance = step.tolerance.max(COARSE);
+        let tolerance = step.tolerance.max(JUMPS.tolerance);
         let mut taken = contact.request(time, time - begun, &loads, tolerance)?;
         (taken.interval.interpolant, taken.end, taken.cancelled) = (step.interval.interpolant, end, step.cancelled);
         let attempt = contact.attempt(&taken)?;
@@ -103,11 +97,11 @@ impl JumpSearch<'_> {
         let Held { current, .. } = &contact.computation.state.held;
         add(&mut self.counts, current.solution.counts);
         // besides the jump, what is smooth
-        let least = (LEFT + (1.0 - LEFT) * part * part) * self.released;
+        let least = (JUMPS.in_a_part + (1.0 - JUMPS.in_a_part) * part * part) * self.released;
         if !contact.passes().is_some_and(|report| report.may_jump(least)) {
             return Ok(false);
         }
-        if part <= SHORTEST {
+        if part <= JUMPS.shortest {
             return Ok(true);
         }
         let end = current.solution.clone();

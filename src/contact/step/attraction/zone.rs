@@ -46,12 +46,6 @@ impl Builder {
     }
 }
 
-/// Fewer cells in the zone of an attraction are refused.
-const LEAST_ZONE: f64 = 2.0;
-
-/// A zone shorter by rounding is not refused.
-const ROUNDING: f64 = 1e-9;
-
 /// The length of the zone in which an attraction of this [`softening`] acts at the edge of a contact, over the longer
 /// side of a cell. The pull-off force errs by this figure alike for all laws (docs/accuracy.md).
 fn cells_in_zone(softening: f64, compliance: f64, grid: &Grid) -> f64 {
@@ -66,7 +60,7 @@ fn longer_side(grid: &Grid) -> f64 {
 }
 
 /// The slope at which a law softens. Rejects a law that is no attraction, and a mesh on which even the elastic
-/// response has too short a zone.
+/// response has a zone of fewer than 2 cells.
 pub(in crate::contact) fn resolved_softening(law: &dyn Attraction, material: &Material, grid: &Grid) -> Result<f64> {
     let of_law = || {
         positive("work of separation", law.work())?;
@@ -78,20 +72,18 @@ pub(in crate::contact) fn resolved_softening(law: &dyn Attraction, material: &Ma
         Ok(softening(law))
     };
     let softening = or_failure_of(|| law.failure(), of_law)?;
-    let cells = cells_in_zone(softening, material.glassy_compliance()?, grid);
-    if cells >= LEAST_ZONE * (1.0 - ROUNDING) {
+    let (cells, minimum) = (cells_in_zone(softening, material.glassy_compliance()?, grid), 2.0);
+    // but for rounding
+    if cells >= minimum * (1.0 - 1e-9) {
         return Ok(softening);
     }
-    let (spacing, range) = (longer_side(grid) * cells / LEAST_ZONE, law.range() * (LEAST_ZONE / cells).sqrt());
-    Err(Error::ZoneNotResolved { cells, minimum: LEAST_ZONE, spacing, range })
+    let (spacing, range) = (longer_side(grid) * cells / minimum, law.range() * (minimum / cells).sqrt());
+    Err(Error::ZoneNotResolved { cells, minimum, spacing, range })
 }
 
-/// Fewer cells resolve the zone badly.
-const COARSE_ZONE: f64 = 4.0;
-
-/// The cells in the zone at this compliance, where they are few.
+/// The cells in the zone at this compliance, where they are fewer than 4.
 pub(in crate::contact::step) fn coarse_zone(scene: &Scene, compliance: impl FnOnce() -> f64) -> Option<f64> {
     let softening = scene.ground.softening;
     let in_zone = || cells_in_zone(softening, compliance(), &scene.ground.grid);
-    (softening > 0.0).then(in_zone).filter(|cells| *cells < COARSE_ZONE)
+    (softening > 0.0).then(in_zone).filter(|cells| *cells < 4.0)
 }
