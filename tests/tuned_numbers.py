@@ -2,10 +2,10 @@
 
     python3 tests/tuned_numbers.py src/states adaptive_runs_on_states_err STATES=40
 
-copies the repository to target/tuned, where each scalar f64 constant of the source is a function that the environment
-variable TUNED="src/states/control.rs:AIM=0.5" multiplies, builds the suite once, and runs one of its tests with every
-number of the files that begin with the first argument halved and doubled. What is printed are the lines of the test
-that differ. docs/maintainers/tuned_numbers.md has the results.
+copies the repository to target/tuned, where the numbers of the files that begin with the first argument can be changed:
+each scalar constant is a function, and each field of a constant struct a value, that the environment variable
+TUNED="src/states/control.rs:AIM=0.5" multiplies. It builds the suite once, and runs one of its tests with every number
+halved and doubled. What is printed are the lines of the test that differ. docs/maintainers/tuned_numbers.md has the results.
 """
 
 import difflib
@@ -18,7 +18,11 @@ import sys
 
 ROOT = pathlib.Path(__file__).parent.parent
 TO = ROOT / "target" / "tuned"
-CONSTANT = re.compile(r"^([ \t]*)(pub(?:\([^)]*\))?\s+)?const\s+([A-Z][A-Z0-9_]*)\s*:\s*f64\s*=\s*([^;]+);", re.M)
+KIND = r"(?:f64|usize|[iu]32)"
+CONSTANT = re.compile(rf"^([ \t]*)(pub(?:\([^)]*\))?\s+)?const\s+([A-Z][A-Z0-9_]*)\s*:\s*({KIND})\s*=\s*([^;]+);", re.M)
+# one struct of the numbers of a mechanism
+MECHANISM = re.compile(r"^((?:pub(?:\([^)]*\))?\s+)?)const\s+([A-Z][A-Z0-9_]*)\s*:\s*(\w+)\s*=\s*(\3\s*\{[^{}\"]*\});", re.M)
+FIELD = re.compile(r"([{,]\s*)(\w+):\s*(-?\d[^,{}\[\]]*?)\s*(?=[,}])")
 # what is no expression: uses, comments, characters and texts
 OTHER = re.compile(r"""^[ \t]*(?:pub(?:\([^)]*\))?\s+)?use\s+[^;]+;|//[^\n]*|'(?:[^'\\\n]|\\[^\n])'|r#"(?:[^"]|"(?!#))*"#|"(?:[^"\\]|\\[\s\S])*\"""", re.M)
 CHOICE = """//! Numbers that an environment variable multiplies.
@@ -29,9 +33,24 @@ static CHOSEN: std::sync::LazyLock<Option<(String, f64)>> = std::sync::LazyLock:
     Some((name.to_owned(), factor.parse().ok()?))
 });
 
-pub(crate) fn number(name: &str, value: f64) -> f64 {
+pub(crate) trait Number {
+    fn times(self, factor: f64) -> Self;
+}
+
+macro_rules! numbers {
+    ($($kind:ty),*) => {
+        $(impl Number for $kind {
+            fn times(self, factor: f64) -> Self {
+                (self as f64 * factor) as Self
+            }
+        })*
+    };
+}
+numbers!(f64, usize, i32, u32);
+
+pub(crate) fn number<N: Number>(name: &str, value: N) -> N {
     match &*CHOSEN {
-        Some((chosen, factor)) if chosen == name => value * factor,
+        Some((chosen, factor)) if chosen == name => value.times(*factor),
         _ => value,
     }
 }
@@ -43,22 +62,24 @@ def unchangeable(texts):
     names = set()
     for text in texts.values():
         for kind, value in re.findall(r"(?:const|static)\s+[A-Z]\w*\s*:\s*([^=;]+(?:;[^=]+)?)=\s*((?:[^;]|;(?=[^\n]*\]))+);", text):
-            if kind.strip() != "f64":
+            if not re.fullmatch(KIND, kind.strip()):
                 names |= set(re.findall(r"\b[A-Z][A-Z0-9_]+\b", value))
+            names |= set(re.findall(r";\s*([A-Z][A-Z0-9_]+)\s*\]", kind))
         names |= set(re.findall(r"(?:=>|\|)\s*([A-Z][A-Z0-9_]+)\s*=>", text))
-        names |= set(re.findall(r"const\s+([A-Z][A-Z0-9_]*)\s*:\s*f64;", text))
+        names |= set(re.findall(r";\s*([A-Z][A-Z0-9_]+)\s*\]", text))
+        names |= set(re.findall(rf"const\s+([A-Z][A-Z0-9_]*)\s*:\s*{KIND};", text))
     return names
 
 
-def constants(texts):
+def constants(texts, where):
     """Of each file the names of its numbers."""
     fixed = unchangeable(texts)
-    return {path: {found[3] for found in CONSTANT.finditer(text)} - fixed for path, text in texts.items()}
+    return {path: {found[3] for found in CONSTANT.finditer(text) if path.startswith(where)} - fixed for path, text in texts.items()}
 
 
 def of_other_kinds(texts):
     """Names of constants of any other type."""
-    return {name for text in texts.values() for name in re.findall(r"\bconst\s+([A-Z][A-Z0-9_]*)\s*:(?!\s*f64\s*=)", text)}
+    return {name for text in texts.values() for name in re.findall(rf"\bconst\s+([A-Z][A-Z0-9_]*)\s*:(?!\s*{KIND}\s*=)", text)}
 
 
 def of_module(module, shown):
@@ -88,41 +109,57 @@ def with_functions(path, text, own, shown, names):
     text = "".join(parts) + text[last:]
 
     def function(found):
-        indent, visible, name, value = found.groups()
+        indent, visible, name, kind, value = found.groups()
         if name not in own:
             return found[0]
         number = f'std::sync::LazyLock::new(|| crate::tuned::number("{path}:{name}", {value}))'
-        body = f"static V: std::sync::LazyLock<f64> = {number}; *V"
-        return f"{indent}#[allow(non_snake_case)]\n{indent}{visible or ''}fn {name}() -> f64 {{ {body} }}"
+        body = f"static V: std::sync::LazyLock<{kind}> = {number}; *V"
+        return f"{indent}#[allow(non_snake_case)]\n{indent}{visible or ''}fn {name}() -> {kind} {{ {body} }}"
 
     return CONSTANT.sub(function, text)
 
 
-def rewrite():
+def with_fields(path, text, fields):
+    """A file whose structs of numbers are computed; the names of their numbers are added to `fields`."""
+    def computed(found):
+        visible, name, kind, value = found.groups()
+
+        def number(field):
+            fields.append(f"{path}:{name}.{field[2]}")
+            return f'{field[1]}{field[2]}: crate::tuned::number("{fields[-1]}", {field[3]})'
+
+        value = FIELD.sub(number, re.sub(r"//[^\n]*", "", value))
+        return f"{visible}static {name}: std::sync::LazyLock<{kind}> = std::sync::LazyLock::new(|| {value});"
+
+    return MECHANISM.sub(computed, text)
+
+
+def rewrite(where):
     """The copy of the repository, and the names of all its numbers."""
     wanted = lambda folder, names: [name for name in names if name in ("target", ".git")]
     shutil.rmtree(TO / "src", ignore_errors=True)
     shutil.copytree(ROOT, TO, ignore=wanted, dirs_exist_ok=True)
     files = [path for path in sorted((TO / "src").rglob("*.rs")) if "tests" not in path.parts and path.name != "tests.rs"]
     texts = {str(path.relative_to(TO)): path.read_text() for path in files}
-    found = constants(texts)
+    found, fields = constants(texts, where), []
     names = set().union(*found.values()) - of_other_kinds(texts)
     shown = found
     for _ in range(3):
         shown = {path: shown[path] | taken_by(text, shown, names) for path, text in texts.items()}
     for path, text in texts.items():
-        (TO / path).write_text(with_functions(path, text, found[path], shown, names))
+        changed = with_functions(path, text, found[path], shown, names)
+        (TO / path).write_text(with_fields(path, changed, fields) if path.startswith(where) else changed)
     lib = re.sub(r"#!\[(?:forbid|deny|warn)\([^\]]*\)\]", "", (TO / "src/lib.rs").read_text())
     first = re.search(r"^(?:pub )?mod ", lib, re.M).start()
     first = lib.rfind("\n\n", 0, first) + 2
     (TO / "src/lib.rs").write_text(lib[:first] + "mod tuned;\n" + lib[first:])
     (TO / "src/tuned.rs").write_text(CHOICE)
-    return [f"{path}:{name}" for path in found for name in sorted(found[path])]
+    return [f"{path}:{name}" for path in found for name in sorted(found[path])] + fields
 
 
 def main():
     where, test, *settings = sys.argv[1:]
-    names = [name for name in rewrite() if name.startswith(where)]
+    names = rewrite(where)
     cargo = ["cargo", "test", "--all-features", "-p", "viscocontact-tests", "--test", "suite"]
     subprocess.run([*cargo, "--no-run"], cwd=TO, check=True)
 

@@ -198,7 +198,10 @@ impl Judge<StatesContact> for OnLevels {
             let held = if middle.level() > 0.0 { &middle.levels } else { &contact.levels };
             let released = held.shear.as_ref().map_or(0.0, |held| shear.lost - held.lost);
             let in_doubt = if halves.level() > 0.0 { 0.0 } else { released };
-            see([(off[3] + in_doubt) / OF_HALVES, 0.0], [shear.lost.max(done.max(far * most / SMALL) * along * pressed), 0.0]);
+            see(
+                [(off[3] + in_doubt) / OF_HALVES, 0.0],
+                [shear.lost.max(done.max(far * most / SMALL) * along * pressed), 0.0],
+            );
             see([off[4], 0.0], [f64::max(done, far * most) / SMALL * along * pressed, 0.0]);
             // levels that stick keep what a step has moved them by
             let time = end - record.corner;
