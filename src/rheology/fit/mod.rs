@@ -38,8 +38,8 @@ pub(crate) struct Search {
     pub(crate) hidden: f64,
 }
 
-/// How long a series is sought, chosen as the samples of a function are (series.rs): half of it costs terms, and twice as
-/// much saves few.
+/// How long a series is sought, chosen as the samples of a function are (series.rs): half of it costs terms, and twice
+/// as much saves few.
 pub(in crate::rheology) struct Effort {
     /// Times per decade tried for a function: the error of the trapezoidal rule in ln λ is about e^(−π²/h), so that two
     /// or three suffice for 1e-4.

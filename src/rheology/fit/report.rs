@@ -25,7 +25,8 @@ impl FitSample {
     }
 }
 
-/// Maximum root mean square misfit of the nearest series to measurements that are accepted.
+/// Maximum root mean square misfit of the nearest series to measurements that are accepted, and maximum scatter that is
+/// judged from few rows.
 pub(crate) const MOST_MISFIT: f64 = 0.1;
 /// Creep that is less uncertain than this is known.
 pub(in crate::rheology) const KNOWN: f64 = 0.05;

@@ -143,17 +143,19 @@ impl Experiment {
 pub(super) struct Scatter {
     /// Data may deviate from a monotone curve by this many standard deviations of their scatter, ...
     pub(super) deviations: f64,
-    /// ... but by no more than this, relatively.
+    /// ... but by no more than this, relatively: half and twice of it do as well.
     pub(super) most: f64,
     /// Rows on either side of one, by which its scatter and its slope are judged; tables of fewer than three times as
     /// many are short.
     pub(super) around: usize,
-    /// Of so many rows, one may be an outlier: more are a property of the table, and fewer do not tell their scatter.
+    /// Of so many rows, one may be an outlier: more are a property of the table, and fewer do not tell their scatter. Ten
+    /// do as well.
     pub(super) per_outlier: usize,
     /// Relative deviations of outliers are at least this: less does little, and curves without scatter are continued no
-    /// better.
+    /// better. Half of it does as well.
     pub(super) least: f64,
-    /// A fit of all samples leaves less of an outlier inside than a fit of the others, but at least this many deviations.
+    /// A fit of all samples leaves less of an outlier inside than a fit of the others, but at least this many
+    /// deviations: one and four do as well.
     pub(super) suspect: f64,
     /// An end that deviates by more than this share of what makes it an outlier follows the curve of the others poorly.
     pub(super) doubtful: f64,

@@ -36,14 +36,14 @@ pub(super) const FITTING: Fitting =
 struct Smoothing {
     /// A smooth spectrum explains data within this misfit, in the root mean square, or their noise.
     misfit: f64,
-    /// Times per decade, and in all, since the cost grows with their third power.
+    /// Times per decade, and in all, since the cost grows with their third power: a bound over twelve decades and more.
     density: f64,
     times: f64,
     /// Factor by which it extends beyond the times of the search.
     beyond: f64,
     /// A sparse series follows the curve within this, or within a fifth of the noise, ...
     follows: f64,
-    /// ... at this many points per decade, and at most in all over the samples of a table.
+    /// ... at this many points per decade, and at most in all over the samples of a table, over eight decades and more.
     followed: f64,
     in_all: f64,
 }

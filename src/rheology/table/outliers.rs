@@ -7,9 +7,6 @@ use super::data::SCATTER;
 use crate::rheology::fit::{FittedSeries, Sample, Search, damped_step, linearise};
 use crate::rheology::table::measured::FITTING;
 
-/// Uncertainties and systematic misfits below this need no warning.
-pub(super) const TOLERABLE: f64 = 5e-3;
-
 impl Search {
     /// The samples that do not contradict all others, and those that do, with their relative deviation from the fit of
     /// the others; or, kept, the end that does so by half as much. `scatter` is the relative standard deviation of a

@@ -33,7 +33,7 @@ struct Shifting {
     /// Shifts whose difference is less than this above the least are as good.
     as_good: f64,
     /// The squared error over the squared error of independent differences: each is counted from both sides, and
-    /// outliers count less.
+    /// outliers count less. Half of it does as well.
     inflation: f64,
     /// ln of the values may differ by this in the root mean square where two isotherms overlap.
     most_apart: f64,
