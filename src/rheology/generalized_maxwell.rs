@@ -1,5 +1,5 @@
 use crate::error::{Result, least_length, positive, within};
-use crate::rheology::{CreepSpectrum, RelaxationSpectrum, forward_rheology};
+use crate::rheology::{CreepSpectrum, ROUNDING, RelaxationSpectrum, forward_rheology};
 
 /// A spring and any number of Maxwell elements in parallel (a Prony series):
 /// G(t) = G_∞ + Σ G_k e^(−t/τ_k). A solid if G_∞ > 0, otherwise a fluid.
@@ -14,9 +14,6 @@ use crate::rheology::{CreepSpectrum, RelaxationSpectrum, forward_rheology};
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct GeneralizedMaxwell(CreepSpectrum);
-
-/// A sum of shares this close to 1 is 1.
-const SHARES_ROUNDING: f64 = 1e-12;
 
 impl GeneralizedMaxwell {
     /// A body of `equilibrium` modulus \[Pa\] (0 for a fluid) and `terms` of (modulus \[Pa\], relaxation
@@ -60,9 +57,9 @@ impl GeneralizedMaxwell {
         for &PronyTerm { share, .. } in terms {
             rest -= within("share of the glassy modulus", share, (0.0..=1.0).contains(&share), "in [0, 1]")?;
         }
-        within("sum of the shares", 1.0 - rest, rest >= -SHARES_ROUNDING, "at most 1")?;
+        within("sum of the shares", 1.0 - rest, rest >= -ROUNDING, "at most 1")?;
         // shares printed with few digits may add up to 1 but for rounding: a fluid
-        let rest = if rest > SHARES_ROUNDING { rest } else { 0.0 };
+        let rest = if rest > ROUNDING { rest } else { 0.0 };
         GeneralizedMaxwell::new(rest * glassy, &PronyTerm::times(terms, glassy))
     }
 

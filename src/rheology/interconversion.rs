@@ -13,11 +13,6 @@
 //! In σ = 1/s the reciprocal has the form of φ again, with poles at the times 1/z_k: one function
 //! converts both ways.
 
-/// Poles closer than this, relative to their position, are replaced by one pole at their mean, weighted by
-/// strength. The replacement changes the function by a relative 1e-13 at most (the square of the distance, over
-/// eight), while zeros in a narrower gap would be resolved to fewer than ten digits of its width.
-const SAME_POLE: f64 = 1e-6;
-
 /// The coefficients c′, f′ and (b_k, z_k), zeros ascending, of the reciprocal c′ + f′ s + Σ b s/(s + z) of
 /// c + f/s + Σ a p/(p + s), given by c, f and `terms` of positive strengths a at ascending, distinct poles p.
 pub(crate) fn reciprocal(constant: f64, slope: f64, terms: &[(f64, f64)]) -> (f64, f64, Vec<(f64, f64)>) {
@@ -47,13 +42,15 @@ pub(crate) fn reciprocal(constant: f64, slope: f64, terms: &[(f64, f64)]) -> (f6
     (constant_of_reciprocal, slope_of_reciprocal, zeros)
 }
 
-/// The terms with clusters of poles replaced by their weighted means.
+/// The terms with clusters of poles replaced by their means, weighted by strength: poles closer than 1e-6, relative to
+/// their position. This changes the function by a relative 1e-13 at most (the square of the distance, over eight),
+/// while zeros in a narrower gap would be resolved to fewer than ten digits of its width.
 fn merged(terms: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let mut first = 0.0;
     let mut merged: Vec<(f64, f64)> = Vec::with_capacity(terms.len());
     for &(a, p) in terms {
         match merged.last_mut() {
-            Some((strength, mean)) if p <= first * (1.0 + SAME_POLE) => {
+            Some((strength, mean)) if p <= first * (1.0 + 1e-6) => {
                 *mean += (p - *mean) * (a / (*strength + a));
                 *strength += a;
             }
@@ -66,9 +63,6 @@ fn merged(terms: &[(f64, f64)]) -> Vec<(f64, f64)> {
     merged
 }
 
-/// A relative contribution to the function below this is rounding.
-const ROUNDING: f64 = 0.5 * f64::EPSILON;
-
 /// The terms that exceed the rounding error of the constant, the slope, or a stronger term of a higher or
 /// lower pole. If the pole of such a term is at a zero of the others, the zeros on its two sides coincide in `f64`, and
 /// the division of the strength between them would be arbitrary.
@@ -78,10 +72,11 @@ fn significant(terms: &[(f64, f64)], constant: f64, slope: f64) -> Vec<(f64, f64
     for k in (0..terms.len().saturating_sub(1)).rev() {
         highest[k] = highest[k + 1].max(terms[k + 1].0);
     }
+    let rounding = 0.5 * f64::EPSILON;
     let mut lowest = slope;
     let mut significant = Vec::with_capacity(terms.len());
     for (&(a, p), highest) in terms.iter().zip(highest) {
-        if a > ROUNDING * highest && a * p > ROUNDING * lowest {
+        if a > rounding * highest && a * p > rounding * lowest {
             significant.push((a, p));
         }
         lowest = lowest.max(a * p);

@@ -197,7 +197,7 @@ pub trait Rheology: Debug + Send + Sync {
     }
 }
 
-/// A smaller relative decrease of a compliance is rounding.
+/// A smaller relative decrease of a compliance is rounding, and so is a smaller distance of a sum of shares from 1.
 const ROUNDING: f64 = 1e-12;
 
 /// Whether `t` is within the range of a rheology known until `until`, but for rounding.

@@ -6,11 +6,8 @@ use crate::error::{Refusal, Result};
 use crate::rheology::{Rheology, is_known};
 use crate::rounded::rounded;
 
-/// A contact takes steps by the series, and its elastic response by J(t): they must be the same function but for such
-/// a part.
-const SAME_CREEP: f64 = 1e-3;
-
-/// Rejects a rheology with a series of another function than its creep, at t = 0 and about each retardation time.
+/// Rejects a rheology with a series of another function than its creep, at t = 0 and about each retardation time: a
+/// contact takes steps by the series, and its elastic response by J(t). They may differ by a thousandth.
 pub(super) fn series_is_creep(rheology: &Arc<dyn Rheology>) -> Result<()> {
     let Some(spectrum) = rheology.creep_spectrum() else { return Ok(()) };
     let until = rheology.known_until();
@@ -20,7 +17,7 @@ pub(super) fn series_is_creep(rheology: &Arc<dyn Rheology>) -> Result<()> {
     for time in std::iter::once(0.0).chain(times) {
         let [creep, series] = [rheology.creep_compliance(time), spectrum.compliance(time)];
         // what is no compliance is refused where it is used
-        if (series - creep).abs() > SAME_CREEP * creep.abs() {
+        if (series - creep).abs() > 1e-3 * creep.abs() {
             let [time, creep, series] = [time, creep, series].map(|number| rounded(number, 5));
             let what = format!(
                 "Rheology::creep_spectrum is the series of another body: J({time} s) = {series} 1/Pa by the series, \

@@ -3,9 +3,6 @@
 use crate::error::{Refusal, Result};
 use crate::rheology::Material;
 
-/// Mismatch of two Poisson's ratios that is not rounding.
-const SAME_POISSON: f64 = 1e-9;
-
 impl Material {
     /// Rejects a layer of the Poisson's ratio `layer` that is not that of this material.
     pub(crate) fn check_ratio_of(&self, layer: f64) -> Result<()> {
@@ -17,7 +14,8 @@ impl Material {
         };
         let ratios: Vec<_> = self.poisson_ratios().collect();
         match ratios[..] {
-            [Some(nu)] if (nu - layer).abs() <= SAME_POISSON => Ok(()),
+            // but for rounding
+            [Some(nu)] if (nu - layer).abs() <= 1e-9 => Ok(()),
             // to the digits that were given
             [Some(nu)] => refused(&format!(
                 "the material has the constant ratio {}: give both the same, a layer after its thickness",

@@ -30,17 +30,18 @@ pub struct CreepSeries {
     pub(super) measured: [f64; 2],
 }
 
-/// Samples per decade to which a series is fitted, and at which it is checked.
-const FITTED: f64 = 16.0;
-const CHECKED: f64 = 67.0;
-/// Part of the tolerance that the fit may use, so that the finer check passes.
-const FITTED_SHARE: f64 = 0.9;
-/// Maximum number of decades of a fit. The time of a fit grows with their fourth power: the number of terms grows with
-/// the decades, and each merger of two terms polishes all the others by least squares, which takes the square of their
-/// number for each sample. Fifty decades take three seconds with a tolerance of 1e-4, and seventeen with 1e-6.
-const MOST_DECADES: f64 = 50.0;
-/// Factor by which the times of the terms extend beyond the range.
-const BEYOND: f64 = 10.0;
+/// How a function is sampled, chosen on formulas over three to ten decades within tolerances of 1e-2 to 1e-6.
+struct Sampling {
+    /// Samples per decade to which a series is fitted, and at which it is checked.
+    fitted: f64,
+    checked: f64,
+    /// Part of the tolerance that the fit may use, so that the finer check passes.
+    share: f64,
+    /// Factor by which the times of the terms extend beyond the range.
+    beyond: f64,
+}
+
+const SAMPLING: Sampling = Sampling { fitted: 16.0, checked: 67.0, share: 0.9, beyond: 10.0 };
 
 impl CreepSeries {
     /// The exact series of `rheology`, or one fitted over `times`: the fewest terms whose relative error is at
@@ -61,19 +62,22 @@ impl CreepSeries {
             let (known_until, measured) = (rheology.known_until(), rheology.measured());
             return Ok(CreepSeries { spectrum, report, known_until, measured });
         }
+        // The time of a fit grows with the fourth power of the decades: the number of terms grows with them, and each
+        // merger of two terms polishes all the others by least squares, which takes the square of their number for each
+        // sample. Fifty decades take three seconds with a tolerance of 1e-4, and seventeen with 1e-6.
         let decades = (last / first).log10();
-        within("decades of a series", decades, decades <= MOST_DECADES, "at most 50 (name fewer with Builder::times)")?;
+        within("decades of a series", decades, decades <= 50.0, "at most 50 (name fewer with Builder::times)")?;
 
         let glassy = checked(rheology, 0.0, 0.0)?;
-        let samples = sampled(rheology, [first, last], FITTED, glassy)?;
+        let samples = sampled(rheology, [first, last], SAMPLING.fitted, glassy)?;
         let search = Search {
             constant: (glassy > 0.0).then_some(glassy),
             slope: true,
-            times: [first / BEYOND, last * BEYOND],
+            times: [first / SAMPLING.beyond, last * SAMPLING.beyond],
             hidden: f64::INFINITY,
         };
-        let series = search.within(&samples, FITTED_SHARE * tolerance);
-        let report = FitReport::new(&series, &sampled(rheology, [first, last], CHECKED, glassy)?);
+        let series = search.within(&samples, SAMPLING.share * tolerance);
+        let report = FitReport::new(&series, &sampled(rheology, [first, last], SAMPLING.checked, glassy)?);
         if let Some(worst) = report.worst().filter(|worst| worst.misfit().abs() > tolerance) {
             let what = format!(
                 "no exponential series was found within {tolerance:e}: the error of the best is {:.1e}, at {} s",

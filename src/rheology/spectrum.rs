@@ -222,10 +222,6 @@ impl RelaxationSpectrum {
     }
 }
 
-/// Range of the coefficients and times of a series, so that their reciprocals and products do not overflow.
-const LEAST: f64 = 1e-100;
-const MOST: f64 = 1e100;
-
 /// Checks the ends of a series and its (strength, time) pairs, sorts the pairs by time, merges equal times, drops
 /// zero strengths.
 fn sorted_terms(
@@ -233,7 +229,8 @@ fn sorted_terms(
     ends: [f64; 2],
     terms: &[(f64, f64)],
 ) -> Result<Vec<(f64, f64)>> {
-    let inside = |value: f64| (LEAST..=MOST).contains(&value);
+    // so that reciprocals and products of two do not overflow
+    let inside = |value: f64| (1e-100..=1e100).contains(&value);
     let magnitude = |field, value: f64| within(field, value, value == 0.0 || inside(value), "0, or in [1e-100, 1e100]");
     magnitude(first, ends[0])?;
     magnitude(second, ends[1])?;

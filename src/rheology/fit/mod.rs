@@ -38,23 +38,30 @@ pub(crate) struct Search {
     pub(crate) hidden: f64,
 }
 
-/// Times per decade tried for a function: the error of the trapezoidal rule in ln λ is about e^(−π²/h), so that two or
-/// three suffice for 1e-4.
-const DENSITIES: [f64; 4] = [2.0, 3.0, 5.0, 8.0];
-/// Mergers tried, cheapest first, before the series of a function counts as the sparsest.
-const TRIES: usize = 3;
-/// Iterations of the polish between mergers, and at the end.
-const BRIEF: usize = 12;
-pub(in crate::rheology) const LONG: usize = 60;
+/// How long a series is sought, chosen as the samples of a function are (series.rs): half of it costs terms, and twice
+/// as much saves few.
+pub(in crate::rheology) struct Effort {
+    /// Times per decade tried for a function: the error of the trapezoidal rule in ln λ is about e^(−π²/h), so that two
+    /// or three suffice for 1e-4.
+    densities: [f64; 4],
+    /// Mergers tried, cheapest first, before the series of a function counts as the sparsest.
+    tries: usize,
+    /// Iterations of the polish between mergers, and at the end.
+    brief: usize,
+    pub(in crate::rheology) long: usize,
+}
+
+pub(in crate::rheology) const EFFORT: Effort =
+    Effort { densities: [2.0, 3.0, 5.0, 8.0], tries: 3, brief: 12, long: 60 };
 
 impl Search {
     /// The series of the fewest terms found whose misfit is at most `most` at every sample; else the one that comes
     /// nearest.
     pub(crate) fn within(&self, samples: &[Sample], most: f64) -> FittedSeries {
         let reached = |series: &FittedSeries| series.worst(samples) <= most;
-        let fitted = |density| polish(&self.on_grid(samples, density), samples, self, LONG, &reached);
-        let mut found = fitted(DENSITIES[0]);
-        for density in &DENSITIES[1..] {
+        let fitted = |density| polish(&self.on_grid(samples, density), samples, self, EFFORT.long, &reached);
+        let mut found = fitted(EFFORT.densities[0]);
+        for density in &EFFORT.densities[1..] {
             if reached(&found) {
                 break;
             }
@@ -63,9 +70,9 @@ impl Search {
                 found = series;
             }
         }
-        let thinned = self.thinned(found, samples, TRIES, &|trial, _| reached(trial));
+        let thinned = self.thinned(found, samples, EFFORT.tries, &|trial, _| reached(trial));
         // the polish of a merger stops early: complete it
-        let polished = polish(&thinned, samples, self, LONG, &|_| false);
+        let polished = polish(&thinned, samples, self, EFFORT.long, &|_| false);
         if polished.worst(samples) <= thinned.worst(samples) { polished } else { thinned }
     }
 
@@ -132,7 +139,7 @@ impl Search {
             let mut mergers = self.mergers(&best, samples);
             mergers.sort_by(|a, b| a.0.total_cmp(&b.0));
             let next = mergers.iter().take(tries).find_map(|(_, merged)| {
-                let trial = polish(merged, samples, self, BRIEF, &|series| prefers(series, &best));
+                let trial = polish(merged, samples, self, EFFORT.brief, &|series| prefers(series, &best));
                 prefers(&trial, &best).then_some(trial)
             });
             match next {

@@ -25,10 +25,9 @@ impl FitSample {
     }
 }
 
-/// Maximum root mean square misfit of the nearest series to measurements that are accepted.
+/// Maximum root mean square misfit of the nearest series to measurements that are accepted, and maximum scatter that is
+/// judged from few rows.
 pub(crate) const MOST_MISFIT: f64 = 0.1;
-/// Creep that is more uncertain than this, within a factor of eleven, is unknown: the number would say nothing.
-const UNKNOWN: f64 = 10.0;
 /// Creep that is less uncertain than this is known.
 pub(in crate::rheology) const KNOWN: f64 = 0.05;
 
@@ -239,7 +238,8 @@ impl fmt::Display for FitReport {
         }
         if self.uncertainty() > 0.0 {
             match self.uncertainty() {
-                uncertainty if uncertainty > UNKNOWN => write!(f, "; creep unknown at some times")?,
+                // within a factor of eleven: the number would say nothing
+                uncertainty if uncertainty > 10.0 => write!(f, "; creep unknown at some times")?,
                 uncertainty => write!(f, "; creep uncertain by {:.1} % at most", 100.0 * uncertainty)?,
             }
             let known: Vec<(f64, bool)> = self.uncertainties().map(|(time, by)| (time, by <= KNOWN)).collect();

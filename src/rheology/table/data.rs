@@ -4,7 +4,7 @@ use crate::rounded::rounded;
 use std::fmt;
 
 use crate::error::{Refusal, Result, least_length};
-use crate::rheology::fit::{FitWarning, MaterialFunction, Sample};
+use crate::rheology::fit::{FitWarning, MOST_MISFIT, MaterialFunction, Sample};
 
 /// A place in a table: the entry of a slice, or the line of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -42,7 +42,7 @@ impl TableRow {
     /// Whether another measurement at the same abscissa agrees within what short tables may scatter.
     fn agrees(&self, other: &TableRow) -> bool {
         let mut ratios = self.values.iter().zip(&other.values).map(|(one, other)| other / one);
-        self.x == other.x && ratios.all(|ratio| (ratio - 1.0).abs() <= MOST_NOISE_OF_FEW)
+        self.x == other.x && ratios.all(|ratio| (ratio - 1.0).abs() <= MOST_MISFIT)
     }
 }
 
@@ -139,19 +139,31 @@ impl Experiment {
     }
 }
 
-/// Data may deviate from a monotone curve by this many standard deviations of their scatter, ...
-pub(super) const DEVIATIONS: f64 = 6.0;
-/// ... but by no more than this, relatively; ...
-pub(super) const MOST_NOISE: f64 = 0.5;
-/// ... in short tables, whose scatter is hard to distinguish from their trend, by no more than this.
-const MOST_NOISE_OF_FEW: f64 = 0.1;
-const FEW: usize = 12;
-/// One row of so many moves the curve by a hundredth of its deviation: it may go the wrong way.
-const ROWS_PER_KNOCK: usize = 100;
-/// Rows before and after one, from which its scatter is judged.
-const AROUND: usize = 4;
-/// Data without noise may deviate by the rounding of their digits; those printed with few digits, by one in the last.
-const LEAST_NOISE: f64 = 1e-9;
+/// What is scatter in a table, and what contradicts it (outliers.rs): chosen on tests/materials/one_bad_row.rs.
+pub(super) struct Scatter {
+    /// Data may deviate from a monotone curve by this many standard deviations of their scatter, ...
+    pub(super) deviations: f64,
+    /// ... but by no more than this, relatively: half and twice of it do as well.
+    pub(super) most: f64,
+    /// Rows on either side of one, by which its scatter and its slope are judged; tables of fewer than three times as
+    /// many are short.
+    pub(super) around: usize,
+    /// Of so many rows, one may be an outlier: more are a property of the table, and fewer do not tell their scatter. Ten
+    /// do as well.
+    pub(super) per_outlier: usize,
+    /// Relative deviations of outliers are at least this: less does little, and curves without scatter are continued no
+    /// better. Half of it does as well.
+    pub(super) least: f64,
+    /// A fit of all samples leaves less of an outlier inside than a fit of the others, but at least this many
+    /// deviations: one and four do as well.
+    pub(super) suspect: f64,
+    /// An end that deviates by more than this share of what makes it an outlier follows the curve of the others poorly.
+    pub(super) doubtful: f64,
+}
+
+pub(super) const SCATTER: Scatter =
+    Scatter { deviations: 6.0, most: 0.5, around: 4, per_outlier: 20, least: 1e-2, suspect: 2.0, doubtful: 0.4 };
+
 /// Number of values for a fit of constant, slope and one term.
 pub(super) const LEAST_ROWS: usize = 4;
 
@@ -198,22 +210,25 @@ pub(crate) fn wrong_way(layout: Layout, rows: &[TableRow], scatter: Option<f64>)
             MaterialFunction::Relaxation => values.iter().map(|value| 1.0 / value).collect(),
             MaterialFunction::Loss => continue,
         };
-        let most = if rows.len() < FEW { MOST_NOISE_OF_FEW } else { MOST_NOISE };
-        let everywhere = median_scatter(&second_differences(&rising)).max(1.5 * quantum(&rising) / DEVIATIONS);
+        let deviations = SCATTER.deviations;
+        // in short tables, scatter is hard to distinguish from the trend
+        let most = if are_few(rows.len()) { MOST_MISFIT } else { SCATTER.most };
+        let everywhere = median_scatter(&second_differences(&rising)).max(1.5 * quantum(&rising) / deviations);
         let explained = |row: usize| match scatter {
-            Some(scatter) => DEVIATIONS * scatter,
-            None => (DEVIATIONS * everywhere.max(scatter_around(&rising, row))).clamp(LEAST_NOISE, most),
+            Some(scatter) => deviations * scatter,
+            // data without noise deviate by the rounding of their digits
+            None => (deviations * everywhere.max(scatter_around(&rising, row))).clamp(1e-9, most),
         };
         let curve = nearest_monotone(&rising);
-        let deviations: Vec<f64> =
-            rising.iter().zip(&curve).map(|(value, curve)| (value / curve - 1.0).abs()).collect();
-        let excesses: Vec<f64> = deviations.iter().enumerate().map(|(row, change)| change / explained(row)).collect();
+        let changes: Vec<f64> = rising.iter().zip(&curve).map(|(value, curve)| (value / curve - 1.0).abs()).collect();
+        let excesses: Vec<f64> = changes.iter().enumerate().map(|(row, change)| change / explained(row)).collect();
         let Some(worst) = (0..rows.len()).max_by(|&a, &b| excesses[a].total_cmp(&excesses[b])) else { continue };
-        let (change, noise) = (deviations[worst], explained(worst));
+        let (change, noise) = (changes[worst], explained(worst));
         if change > noise {
             let off = excesses.iter().filter(|excess| **excess > 1.0).count();
             let TableRow { place, ref values, .. } = rows[worst];
-            if off * ROWS_PER_KNOCK > rows.len() || change > MOST_NOISE_OF_FEW {
+            // one row of a hundred moves the curve by a hundredth of its deviation: it may go the wrong way
+            if off * 100 > rows.len() || change > MOST_MISFIT {
                 let (value, [off, noise]) = (values[index], [change, noise].map(|part| 100.0 * part));
                 let what = format!(
                     "{table}, {place}: {column} = {} deviates by {off:.2} % from the nearest monotone curve, where \
@@ -225,8 +240,8 @@ pub(crate) fn wrong_way(layout: Layout, rows: &[TableRow], scatter: Option<f64>)
                 return Err(Refusal::value("table_wrong_way", what, remedy).naming(column).valued(value).into());
             }
             // rows after a knock deviate, too
-            let Some(most) = (0..rows.len()).max_by(|&a, &b| deviations[a].total_cmp(&deviations[b])) else { continue };
-            let (x, change, rises) = (rows[most].x, deviations[most], rising[most] > curve[most]);
+            let Some(most) = (0..rows.len()).max_by(|&a, &b| changes[a].total_cmp(&changes[b])) else { continue };
+            let (x, change, rises) = (rows[most].x, changes[most], rising[most] > curve[most]);
             let deviation = if rises == (function != MaterialFunction::Relaxation) { change } else { -change };
             knock = Some(FitWarning::Outlier { x, deviation });
         }
@@ -267,17 +282,26 @@ fn second_differences(values: &[f64]) -> Vec<f64> {
 /// The standard deviation of values around zero, from the median of their magnitudes, which a few outliers or a kink
 /// do not change.
 pub(super) fn median_scatter(magnitudes: &[f64]) -> f64 {
-    let mut sorted = magnitudes.to_vec();
-    sorted.sort_by(f64::total_cmp);
     // the median of |N(0, σ)| is 0.6745 σ
-    sorted.get(sorted.len() / 2).map_or(0.0, |median| median / 0.6745)
+    median(magnitudes.to_vec()).map_or(0.0, |median| median / 0.6745)
+}
+
+pub(super) fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
+}
+
+/// Whether a table is too short for [`Scatter::around`].
+fn are_few(rows: usize) -> bool {
+    rows < 3 * SCATTER.around
 }
 
 /// The same of the rows around one: a pair of rows that contradict each other scatters, a single outlier does not.
 fn scatter_around(values: &[f64], row: usize) -> f64 {
-    if values.len() < FEW {
+    if are_few(values.len()) {
         return 0.0;
     }
-    let from = row.saturating_sub(AROUND).min(values.len() - 2 * AROUND - 1);
-    median_scatter(&second_differences(&values[from..=from + 2 * AROUND]))
+    let around = SCATTER.around;
+    let from = row.saturating_sub(around).min(values.len() - 2 * around - 1);
+    median_scatter(&second_differences(&values[from..=from + 2 * around]))
 }

@@ -16,26 +16,20 @@ const TEMPERATURE: WantedColumn = WantedColumn {
     quantity: Quantity::TEMPERATURE,
     by_unit: true,
 };
-/// Temperatures further apart than this \[K\] belong to two isotherms.
-const APART: f64 = 1.0;
-const ICE: f64 = 273.15;
-/// Times or frequencies that differ by less are one, and temperatures \[K\] of one measurement.
-const ONE: f64 = 1e-3;
-const ONE_TEMPERATURE: f64 = 0.1;
 
 type Row = (f64, TableRow);
 
 /// Rows of nearly one temperature, in the order of their temperatures, as isotherms: one begins where a frequency, or a
-/// time, returns, but for one that is measured twice. The rows are followed in the order of the file or of the
-/// temperatures, whichever needs fewer.
+/// time, returns, but for one that is measured twice, at temperatures within 0.1 K. The rows are followed in the order
+/// of the file or of the temperatures, whichever needs fewer.
 fn sweeps(rows: &[Row], are_times: bool) -> Vec<Vec<Row>> {
     let is_one = |earlier: &Row, row: &Row| match are_times {
         // times may be dense
         true => earlier.1.x == row.1.x,
-        false => (earlier.1.x / row.1.x - 1.0).abs() < ONE,
+        false => (earlier.1.x / row.1.x - 1.0).abs() < 1e-3,
     };
     let returns = |sweep: &[Row], row: &Row| {
-        let is_twice = |last: &Row| is_one(last, row) && (last.0 - row.0).abs() < ONE_TEMPERATURE;
+        let is_twice = |last: &Row| is_one(last, row) && (last.0 - row.0).abs() < 0.1;
         !sweep.last().is_some_and(is_twice) && sweep.iter().any(|earlier| is_one(earlier, row))
     };
     let split = |rows: &[Row]| {
@@ -107,9 +101,7 @@ impl Isotherm {
     pub(super) fn log_time(&self, row: &TableRow) -> f64 {
         if self.experiment.layout().zero { row.x.ln() } else { -row.x.ln() }
     }
-}
 
-impl Isotherm {
     /// Reads isotherms from one text file: the columns of [`Measurements::from_csv`], and one of the temperature in K
     /// or °C.
     ///
@@ -154,7 +146,7 @@ impl Isotherm {
         let mut columns = Columns::of(experiment, table, units)?;
         let temperature = table.find(&TEMPERATURE)?.ok_or_else(|| table.missing(&TEMPERATURE, ""))?;
         let zero = match &temperature.unit_of {
-            UnitOf::Sizes(unit, _) if unit.to_lowercase().contains('c') => ICE,
+            UnitOf::Sizes(unit, _) if unit.to_lowercase().contains('c') => 273.15,
             _ => 0.0,
         };
         let deformation = columns.deformation();
@@ -162,7 +154,7 @@ impl Isotherm {
         let with_temperature = |mut row: TableRow| (row.values.pop().unwrap_or(f64::NAN) + zero, row);
         let mut rows: Vec<Row> = columns.rows(table)?.into_iter().map(with_temperature).collect();
         rows.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let near = rows.chunk_by(|a, b| b.0 - a.0 < APART);
+        let near = rows.chunk_by(|a, b| b.0 - a.0 < 1.0);
         let groups = near.flat_map(|rows| sweeps(rows, experiment.layout().zero));
         let isotherm = |rows: Vec<Row>| {
             let mean = rows.iter().map(|row| row.0).sum::<f64>() / rows.len() as f64;

@@ -6,9 +6,6 @@ use crate::rheology::table::isotherm::Isotherm;
 use crate::rheology::table::shift::{Shift, shift_between};
 use crate::rheology::{CreepSeries, MaterialFunction, ShiftedRheology, Tension, TimeTemperature};
 
-/// A reference this near \[K\] to the temperature of an isotherm is that temperature.
-const NEAR: f64 = 0.5;
-
 /// Isotherms shifted along the axis of time (or frequency) until they form one curve at a reference
 /// temperature, which spans more decades than any isotherm (time–temperature superposition).
 ///
@@ -72,7 +69,7 @@ impl MasterCurve {
         let isotherms = sorted(isotherms)?;
         let apart = |isotherm: &Isotherm| (isotherm.temperature - reference).abs();
         let nearest = (0..isotherms.len()).min_by(|&a, &b| apart(&isotherms[a]).total_cmp(&apart(&isotherms[b])));
-        let Some(center) = nearest.filter(|&k| apart(&isotherms[k]) <= NEAR) else {
+        let Some(center) = nearest.filter(|&k| apart(&isotherms[k]) <= 0.5) else {
             let allowed = "the temperature of one of the isotherms, within 0.5 K";
             return Err(Error::OutOfRange { field: "reference temperature", value: reference, allowed });
         };

@@ -6,36 +6,50 @@
 //! spectrum that explains the data is computed, and a sparse series is fitted to its curve.
 
 use crate::rheology::MaterialFunction;
-use crate::rheology::fit::{FittedSeries, LONG, Sample, Search, polish};
+use crate::rheology::fit::{EFFORT, FittedSeries, Sample, Search, polish};
 
-/// Accuracy of the best measurements: misfits below this need no further term.
-pub(super) const FLOOR: f64 = 3e-5;
-/// Times per decade of the first fit.
-pub(super) const DENSITY: f64 = 6.0;
-/// A fit is better by this number of variances of the scatter, or more.
-const NOTICEABLE: f64 = 12.0;
-/// Mergers tried, cheapest first: with noise the first-order cost is a poor estimate.
-const TRIES: usize = 6;
-/// With fewer values per parameter than this a smooth spectrum is preferred to a sparse one.
-const VALUES_PER_PARAMETER: usize = 3;
-/// A smooth spectrum explains data within this misfit, in the root mean square, or their noise.
-const SMOOTH_MISFIT: f64 = 1e-4;
-/// Times per decade of a smooth spectrum.
-const SMOOTH_DENSITY: f64 = 4.0;
-/// Maximum number of these times, since the cost grows with their third power: over more than twelve decades there are
-/// fewer per decade.
-const SMOOTH_TIMES: f64 = 48.0;
-/// Factor by which a smooth spectrum extends beyond the times of the search.
-const SMOOTH_BEYOND: f64 = 10.0;
-/// Weights of the curvature of a smooth spectrum: the first weight, the ratio of successive weights, and their number.
-const WEIGHTS: (f64, f64, i32) = (1e3, 0.1, 16);
-/// A sparse series follows the curve of a smooth spectrum within this, or within this part of the noise, ...
-const FOLLOWS: f64 = 5e-4;
-const FOLLOWS_NOISE: f64 = 0.2;
-/// ... at this many points per decade.
-const FOLLOWED: f64 = 8.0;
-/// Maximum number of points over all samples of a table: one over many decades is followed more coarsely.
-const FOLLOWED_IN_ALL: f64 = 64.0;
+/// How series are fitted to measurements: chosen on tests/materials/sparse_tables.rs, clean and with noise.
+pub(super) struct Fitting {
+    /// Accuracy of the best measurements: misfits below this need no further term.
+    pub(super) floor: f64,
+    /// Times per decade of the first fit.
+    pub(super) density: f64,
+    /// Denser tables are averaged to this many values per decade, over thirty decades or fewer.
+    pub(super) means: f64,
+    /// Factor by which the times of the terms extend beyond the data.
+    pub(super) beyond: f64,
+    /// The largest modulus of a term at t = 0 over the first of relaxation moduli. With 1 a steep power law is off by
+    /// more than 1e-3; with 3 a first modulus that is a little high makes the creep of 2 % of tables a fifth too small.
+    pub(super) hidden: f64,
+    /// A fit is better by this number of variances of the scatter, or more.
+    noticeable: f64,
+    /// Mergers tried, cheapest first: with noise the first-order cost is a poor estimate.
+    tries: usize,
+    /// With fewer values per parameter than this a smooth spectrum is preferred to a sparse one.
+    few: usize,
+}
+
+pub(super) const FITTING: Fitting =
+    Fitting { floor: 3e-5, density: 6.0, means: 24.0, beyond: 3.0, hidden: 2.0, noticeable: 12.0, tries: 6, few: 3 };
+
+/// Smooth spectra, and the sparse series that follow them: chosen on the same tables.
+struct Smoothing {
+    /// A smooth spectrum explains data within this misfit, in the root mean square, or their noise.
+    misfit: f64,
+    /// Times per decade, and in all, since the cost grows with their third power: a bound over twelve decades and more.
+    density: f64,
+    times: f64,
+    /// Factor by which it extends beyond the times of the search.
+    beyond: f64,
+    /// A sparse series follows the curve within this, or within a fifth of the noise, ...
+    follows: f64,
+    /// ... at this many points per decade, and at most in all over the samples of a table, over eight decades and more.
+    followed: f64,
+    in_all: f64,
+}
+
+const SMOOTHING: Smoothing =
+    Smoothing { misfit: 1e-4, density: 4.0, times: 48.0, beyond: 10.0, follows: 5e-4, followed: 8.0, in_all: 64.0 };
 
 /// A series fitted to measurements.
 #[derive(Debug, Clone)]
@@ -66,14 +80,14 @@ impl FittedSeries {
 impl Search {
     /// The series of least squares.
     pub(super) fn nearest(&self, samples: &[Sample]) -> FittedSeries {
-        let enough = |series: &FittedSeries| series.worst(samples) <= 0.1 * FLOOR;
-        polish(&self.on_grid(samples, DENSITY), samples, self, LONG, &enough)
+        let enough = |series: &FittedSeries| series.worst(samples) <= 0.1 * FITTING.floor;
+        polish(&self.on_grid(samples, FITTING.density), samples, self, EFFORT.long, &enough)
     }
 
-    /// Whether a wider search fits samples better by [`NOTICEABLE`].
+    /// Whether a wider search fits samples better by [`Fitting::noticeable`].
     pub(super) fn misses(&self, wider: &Search, samples: &[Sample]) -> bool {
         let [own, other] = [self, wider].map(|search| search.nearest(samples));
-        own.squares(samples) > other.squares(samples) + NOTICEABLE * other.noise(samples).powi(2)
+        own.squares(samples) > other.squares(samples) + FITTING.noticeable * other.noise(samples).powi(2)
     }
 
     /// The series with the best prediction for measurements.
@@ -82,11 +96,11 @@ impl Search {
         let (noise, freedoms) = (start.noise(samples), start.freedoms(samples));
         // the floor holds for single measurements: a mean of many is not fitted more closely
         let root = (samples.iter().map(|sample| sample.weight).sum::<f64>() / samples.len() as f64).sqrt();
-        let few = samples.len() < VALUES_PER_PARAMETER * start.parameters();
-        let smooth = if few { self.smooth(samples, noise.max(SMOOTH_MISFIT * root)) } else { None };
+        let few = samples.len() < FITTING.few * start.parameters();
+        let smooth = if few { self.smooth(samples, noise.max(SMOOTHING.misfit * root)) } else { None };
         let series = match smooth {
-            Some(curve) => self.within(&along(&curve, samples), FOLLOWS.max(FOLLOWS_NOISE * noise)),
-            None => self.sparse(&start, samples, noise.max(FLOOR * root)),
+            Some(curve) => self.within(&along(&curve, samples), SMOOTHING.follows.max(0.2 * noise)),
+            None => self.sparse(&start, samples, noise.max(FITTING.floor * root)),
         };
         let ambiguity = series.worst(&along(&start, samples));
         Measured { series, least_squares: start, ambiguity, noise, freedoms }
@@ -102,22 +116,22 @@ impl Search {
             series.squares(samples) / (noise * noise) + 2.0 * (series.ends() + 2 * series.terms.len()) as f64
         };
         let prefers = |trial: &FittedSeries, current: &FittedSeries| criterion(trial) <= criterion(current);
-        let thinned = self.thinned(start.clone(), samples, TRIES, &prefers);
-        polish(&thinned, samples, self, LONG, &|_| false)
+        let thinned = self.thinned(start.clone(), samples, FITTING.tries, &prefers);
+        polish(&thinned, samples, self, EFFORT.long, &|_| false)
     }
 
     /// The smoothest spectrum that explains the samples; `None` if none does, as for a few discrete times without
     /// noise.
     fn smooth(&self, samples: &[Sample], noise: f64) -> Option<FittedSeries> {
         let [first, last] = self.times;
-        let wide = Search { times: [first / SMOOTH_BEYOND, last * SMOOTH_BEYOND], ..self.clone() };
+        let wide = Search { times: [first / SMOOTHING.beyond, last * SMOOTHING.beyond], ..self.clone() };
         let enough = noise.powi(2) * samples.len() as f64;
-        // the misfit grows with the weight
-        let (first, ratio, tried) = WEIGHTS;
-        let (mut smoothest, mut low, mut high) = (None, 0, tried);
+        // weights of the curvature, with which the misfit grows
+        let weight = |k: i32| 1e3 * 0.1_f64.powi(k);
+        let (mut smoothest, mut low, mut high) = (None, 0, 16);
         while low < high {
             let middle = (low + high) / 2;
-            let series = wide.regularised(samples, first * ratio.powi(middle));
+            let series = wide.regularised(samples, weight(middle));
             if series.squares(samples) <= enough {
                 (smoothest, high) = (Some(series), middle);
             } else {
@@ -131,7 +145,7 @@ impl Search {
     /// for a power law.
     fn regularised(&self, samples: &[Sample], weight: f64) -> FittedSeries {
         let decades = (self.times[1] / self.times[0]).log10();
-        let times = self.grid(SMOOTH_DENSITY.min(SMOOTH_TIMES / decades));
+        let times = self.grid(SMOOTHING.density.min(SMOOTHING.times / decades));
         self.least_squares(samples, times, |time| level(samples, time), weight)
     }
 }
@@ -158,7 +172,7 @@ fn level(samples: &[Sample], time: f64) -> f64 {
 fn along(curve: &FittedSeries, samples: &[Sample]) -> Vec<Sample> {
     let known = || samples.iter().map(|sample| sample.x).filter(|x| *x > 0.0);
     let decades = (known().fold(0.0, f64::max) / known().fold(f64::INFINITY, f64::min)).log10().max(1.0);
-    let followed = FOLLOWED.min(FOLLOWED_IN_ALL / decades);
+    let followed = SMOOTHING.followed.min(SMOOTHING.in_all / decades);
     let mut points = Vec::new();
     let mut push = |function, x| points.push(Sample { function, x, value: curve.value(function, x), weight: 1.0 });
     for (k, &Sample { function, x, .. }) in samples.iter().enumerate() {

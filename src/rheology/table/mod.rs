@@ -22,19 +22,8 @@ use crate::rounded::rounded;
 use crate::values::Counted;
 pub use data::Experiment;
 use data::{Deformation, LEAST_ROWS, TableRow, averaged_repeats, validated, wrong_way};
-use uncertainty::HIDDEN_MODULUS;
-
-/// Denser tables are averaged to this many values per decade, ...
-const MEANS_PER_DECADE: f64 = 24.0;
-/// ... or fewer if they span more decades than this.
-const DECADES: f64 = 30.0;
-/// Factor by which the times of the terms extend beyond the data.
-const BEYOND: f64 = 3.0;
-/// The largest modulus of a term at t = 0 over the first of relaxation moduli. With 1 a steep power law is off by
-/// more than 1e-3; with 3 a first modulus that is a little high makes the creep of 2 % of tables a fifth too small.
-const HIDDEN: f64 = 2.0;
-/// The same before the first of relaxation moduli, where shorter terms fit those after it better.
-const BEYOND_FAST: f64 = 10.0;
+use measured::FITTING;
+use uncertainty::INTERVAL;
 
 /// A table of measured creep, relaxation or dynamic moduli. [`Measurements::fit`] makes a body of it.
 ///
@@ -244,11 +233,12 @@ impl Measurements {
         let mut search = Search {
             constant: None,
             slope: self.experiment == Experiment::Creep,
-            times: [first / BEYOND, last * BEYOND],
-            hidden: HIDDEN,
+            times: [first / FITTING.beyond, last * FITTING.beyond],
+            hidden: FITTING.hidden,
         };
         // terms shorter than the first time have not fully decayed there
-        let wider = Search { times: [first / BEYOND_FAST, last * BEYOND], hidden: HIDDEN_MODULUS, ..search.clone() };
+        let times = [first / INTERVAL.hidden, search.times[1]];
+        let wider = Search { times, hidden: INTERVAL.hidden, ..search.clone() };
         let is_late = self.experiment == Experiment::Relaxation && samples[0].x > 0.0;
         let (averaged, outliers) = (if is_late { &wider } else { &search }).without_outliers(&averaged, self.scatter);
         let of_others = outliers.first().map(|&(Sample { x, .. }, deviation)| FitWarning::Outlier { x, deviation });
@@ -286,15 +276,12 @@ impl Measurements {
 
 /// Replaces neighbouring samples by their geometric means where there are more than a fit needs.
 fn averaged(samples: &[Sample], decades: f64) -> Vec<Sample> {
-    let per_decade = MEANS_PER_DECADE * (DECADES / decades).min(1.0);
+    let per_decade = FITTING.means * (30.0 / decades).min(1.0);
+    let bin = |sample: &Sample| (sample.x.log10() * per_decade).floor();
     let mut averaged: Vec<Sample> = Vec::new();
     for &sample in samples {
         match averaged.last_mut() {
-            Some(mean)
-                if mean.function == sample.function
-                    && mean.bin(per_decade) == sample.bin(per_decade)
-                    && mean.x > 0.0 =>
-            {
+            Some(mean) if mean.function == sample.function && bin(mean) == bin(&sample) && mean.x > 0.0 => {
                 let share = sample.weight / (mean.weight + sample.weight);
                 mean.x *= (sample.x / mean.x).powf(share);
                 mean.value *= (sample.value / mean.value).powf(share);
@@ -304,11 +291,4 @@ fn averaged(samples: &[Sample], decades: f64) -> Vec<Sample> {
         }
     }
     averaged
-}
-
-impl Sample {
-    /// Index of its bin on the logarithmic axis.
-    fn bin(&self, per_decade: f64) -> f64 {
-        (self.x.log10() * per_decade).floor()
-    }
 }

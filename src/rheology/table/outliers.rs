@@ -3,23 +3,9 @@
 //! Left in, one would not only be off itself. The first modulus of relaxation, a little high, is followed by a term
 //! that has a large modulus at t = 0, which nothing else bounds and which slows the creep.
 
-use super::data::{DEVIATIONS, MOST_NOISE};
+use super::data::SCATTER;
 use crate::rheology::fit::{FittedSeries, Sample, Search, damped_step, linearise};
-use crate::rheology::table::measured::FLOOR;
-
-/// Uncertainties and systematic misfits below this need no warning.
-pub(super) const TOLERABLE: f64 = 5e-3;
-/// Relative deviations of outliers are at least this: less does little, and curves without scatter are continued no
-/// better.
-const LEAST: f64 = 1e-2;
-/// A fit of all samples leaves less of an outlier inside than a fit of the others, but at least this many deviations.
-const SUSPECT: f64 = 2.0;
-/// An end that deviates by more than this share of what makes it an outlier follows the curve of the others poorly.
-const DOUBTFUL: f64 = 0.4;
-/// What a fit misses of an end without scatter, over what it misses of the sample next to it, varies by less.
-const CONTINUED: f64 = 2.0;
-/// Of so many rows, one may be an outlier: more are a property of the table, and fewer do not tell their scatter.
-const ROWS_PER_OUTLIER: usize = 20;
+use crate::rheology::table::measured::FITTING;
 
 impl Search {
     /// The samples that do not contradict all others, and those that do, with their relative deviation from the fit of
@@ -32,39 +18,36 @@ impl Search {
     ) -> (Vec<Sample>, Vec<(Sample, f64)>) {
         let (mut kept, mut outliers) = (samples.to_vec(), Vec::new());
         let rows = |kept: &[Sample]| kept.iter().filter(|sample| sample.function == kept[0].function).count();
-        while rows(&kept) >= ROWS_PER_OUTLIER * (outliers.len() + 1) {
+        while rows(&kept) >= SCATTER.per_outlier * (outliers.len() + 1) {
             let whole = self.nearest(&kept);
-            let noise = whole.noise(&kept).max(FLOOR);
+            let noise = whole.noise(&kept).max(FITTING.floor);
             let left = |k: usize| whole.misfit(&kept[k]).abs() * kept[k].weight.sqrt();
             // terms follow rows at the ends, whatever they are
             let is_end = |k: usize| {
                 k == 0 && kept[0].x > 0.0 || kept.get(k + 1).is_none_or(|next| next.function != kept[k].function)
             };
             let worst = (0..kept.len()).max_by(|&a, &b| left(a).total_cmp(&left(b)));
-            let worst = worst.filter(|&k| left(k) > SUSPECT * noise && !is_end(k));
+            let worst = worst.filter(|&k| left(k) > SCATTER.suspect * noise && !is_end(k));
             let tried = (0..kept.len()).filter(|&k| is_end(k)).chain(worst);
             let excess = |k: usize| (k, self.excess(&kept, k, is_end(k), scatter, leverage(&whole, &kept, self, k)));
             let found = tried.map(excess).max_by(|a, b| a.1.0.total_cmp(&b.1.0));
-            // ends of relaxation have warnings of their own
-            let is_doubtful = |excess: f64, deviation: f64| self.slope && excess > DOUBTFUL && deviation.abs() > LEAST;
-            let is_outlier = |excess: f64, deviation: f64| excess > 1.0 && deviation.abs() < MOST_NOISE;
-            match found {
-                Some((k, (excess, deviation))) if is_outlier(excess, deviation) => {
-                    outliers.push((kept.remove(k), deviation))
-                }
-                Some((k, (excess, deviation)))
-                    if is_end(k) && is_doubtful(excess, deviation) && outliers.is_empty() =>
-                {
-                    return (kept.clone(), vec![(kept[k], deviation)]);
-                }
-                _ => break,
+            let Some((k, (excess, deviation))) = found else { break };
+            if excess > 1.0 && deviation.abs() < SCATTER.most {
+                outliers.push((kept.remove(k), deviation));
+                continue;
             }
+            // ends of relaxation have warnings of their own
+            let is_doubtful = self.slope && excess > SCATTER.doubtful && deviation.abs() > SCATTER.least;
+            if is_doubtful && is_end(k) && outliers.is_empty() {
+                return (kept.clone(), vec![(kept[k], deviation)]);
+            }
+            break;
         }
         (kept, outliers)
     }
 
     /// How far a sample deviates from the fit of the others, over what their scatter explains; and relatively. An end
-    /// must deviate as far from a parabola through its neighbours, and further than the sample next to it deviates
+    /// must deviate as far from a parabola through its neighbours, and twice as far as the sample next to it deviates
     /// from the fit of the rest: few curves can be continued. `leverage` is the share of the sample in its own fit.
     fn excess(&self, samples: &[Sample], k: usize, is_end: bool, scatter: Option<f64>, leverage: f64) -> (f64, f64) {
         let (fit, others, deviation) = self.left_out(samples, k);
@@ -72,7 +55,7 @@ impl Search {
         // the curve of the others is uncertain, mostly at the ends, and few samples tell their scatter poorly: of
         // Student's t, whose square exceeds six deviations' as rarely, by a factor of about 1 + 12/n
         let spread = (1.0 + 12.0 / fit.freedoms(&others)) / (1.0 - leverage).max(f64::MIN_POSITIVE);
-        let mut explained = (DEVIATIONS * noise * (spread / samples[k].weight).sqrt()).max(LEAST);
+        let mut explained = (SCATTER.deviations * noise * (spread / samples[k].weight).sqrt()).max(SCATTER.least);
         let mut found = deviation.abs();
         if is_end && found > explained {
             let own = |other: &&Sample| other.function == samples[k].function;
@@ -82,10 +65,10 @@ impl Search {
                 samples[..k].iter().rev().filter(own).take(3).collect()
             };
             // both scatter too
-            let scattered = SUSPECT * noise / samples[k].weight.sqrt();
+            let scattered = SCATTER.suspect * noise / samples[k].weight.sqrt();
             found = found.min(continued(&neighbours, &samples[k]).abs() + scattered);
             let next = self.left_out(&others, if k == 0 { 0 } else { k - 1 }).2;
-            explained = explained.max(CONTINUED * (next.abs() - scattered));
+            explained = explained.max(2.0 * (next.abs() - scattered));
         }
         (found / explained, deviation)
     }

@@ -8,26 +8,33 @@
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-use super::measured::{DENSITY, FLOOR, Measured};
-use super::outliers::TOLERABLE;
+use super::measured::{FITTING, Measured};
 use crate::error::Result;
 use crate::rheology::fit::{FittedSeries, KNOWN, Sample, Search};
 use crate::rheology::{CreepSpectrum, FitReport, FitWarning, MaterialFunction, RelaxationSpectrum};
 
-/// Number of tables drawn.
-const DRAWN: usize = 16;
-/// Half the width of the interval over the standard deviation of the tables drawn: with it 95 % of tables are inside,
-/// as tests/materials/intervals.rs shows.
-const DEVIATIONS: f64 = 2.2;
-/// Times per decade at which the interval is computed.
-const PER_DECADE: f64 = 8.0;
-/// A body relaxes before the first sample from at most so many times the modulus measured there.
-pub(super) const HIDDEN_MODULUS: f64 = 10.0;
-/// An uncertainty of more than this times the misfit is not due to the scatter of the samples.
-const OVER_SCATTER: f64 = 2.0;
-/// Mean square of the difference between neighbouring misfits over their mean square (von Neumann): 2 for noise, less
-/// for misfits that follow one another.
-const SYSTEMATIC: f64 = 1.0;
+/// The interval of a creep compliance, and what is warned of: chosen on tests/materials/intervals.rs.
+pub(super) struct Interval {
+    /// Number of tables drawn.
+    drawn: usize,
+    /// Half the width of the interval over the standard deviation of the tables drawn: with it 95 % of tables are
+    /// inside.
+    deviations: f64,
+    /// A body relaxes before the first sample from at most so many times the modulus measured there, by terms of at
+    /// least such a part of its time.
+    pub(super) hidden: f64,
+    /// Uncertainties and systematic misfits below this need no warning: half and twice do as well.
+    pub(super) tolerable: f64,
+    /// An uncertainty of more than this times the misfit is not due to the scatter of the samples: with one, tables are
+    /// few for their noise alone; four does as well.
+    over_scatter: f64,
+    /// Mean square of the difference between neighbouring misfits over their mean square (von Neumann): 2 for noise,
+    /// less for misfits that follow one another. With a half, creep that speeds up at the end is not seen.
+    systematic: f64,
+}
+
+pub(super) const INTERVAL: Interval =
+    Interval { drawn: 16, deviations: 2.2, hidden: 10.0, tolerable: 5e-3, over_scatter: 2.0, systematic: 1.0 };
 
 /// An interval of the creep compliance of a table.
 #[derive(Debug, Clone)]
@@ -49,7 +56,7 @@ impl FittedSeries {
 }
 
 impl Measured {
-    /// The interval of the creep compliance from the time `first` to `last`.
+    /// The interval of the creep compliance from the time `first` to `last`, at eight times per decade.
     pub(crate) fn uncertainty(
         &self,
         search: &Search,
@@ -59,21 +66,21 @@ impl Measured {
         let function = samples[0].function;
         let creep = self.series.creep(function)?;
         let other = self.least_squares.creep(function)?;
-        let drawn = if self.noise > FLOOR { self.drawn(search, samples) } else { Vec::new() };
-        let scale = DEVIATIONS * student(self.freedoms);
+        let drawn = if self.noise > FITTING.floor { self.drawn(search, samples) } else { Vec::new() };
+        let scale = INTERVAL.deviations * student(self.freedoms);
         let spread = |deviation: &dyn Fn(&CreepSpectrum) -> f64| {
             let squares: f64 = drawn.iter().map(|drawn| deviation(drawn).powi(2)).sum();
             scale * (squares / drawn.len().max(1) as f64).sqrt()
         };
         let unmeasured = function == MaterialFunction::Relaxation && samples[0].x > 0.0;
         let hidden = if unmeasured {
-            let unseen = FLOOR + scale * self.noise / samples[0].weight.sqrt();
+            let unseen = FITTING.floor + scale * self.noise / samples[0].weight.sqrt();
             let bodies = [self.with_hidden_term(first, unseen), self.with_slow_terms(samples, unseen)];
             bodies.iter().map(|series| series.creep(function)).collect::<Result<Vec<_>>>()?
         } else {
             Vec::new()
         };
-        let steps = ((last / first).log10() * PER_DECADE).ceil().max(1.0);
+        let steps = ((last / first).log10() * 8.0).ceil().max(1.0);
         let (mut interval, mut known_from) = (Vec::new(), first);
         for k in 0..=steps as usize {
             let time = first * (last / first).powf(k as f64 / steps);
@@ -82,7 +89,7 @@ impl Measured {
             if by_hidden > KNOWN.ln_1p() {
                 known_from = time;
             }
-            interval.push((time, FLOOR + spread(&apart) + apart(&other) + by_hidden));
+            interval.push((time, FITTING.floor + spread(&apart) + apart(&other) + by_hidden));
         }
         Ok(Uncertainty { interval, known_from })
     }
@@ -97,16 +104,16 @@ impl Measured {
                 let error = sign * (self.noise / sample.weight.sqrt()).min(0.5);
                 sample.value = self.series.value(sample.function, sample.x) * (1.0 + error);
             }
-            search.on_grid(&table, DENSITY).creep(samples[0].function).ok()
+            search.on_grid(&table, FITTING.density).creep(samples[0].function).ok()
         };
-        (0..DRAWN).filter_map(|_| draw()).collect()
+        (0..INTERVAL.drawn).filter_map(|_| draw()).collect()
     }
 
     /// The series and a term that has decayed to the part `unseen` of the modulus at the time `first`.
     fn with_hidden_term(&self, first: f64, unseen: f64) -> FittedSeries {
         let mut series = self.series.clone();
-        let modulus = HIDDEN_MODULUS * series.value(MaterialFunction::Relaxation, first);
-        series.terms.push((modulus, first / (HIDDEN_MODULUS / unseen.min(1.0)).ln()));
+        let modulus = INTERVAL.hidden * series.value(MaterialFunction::Relaxation, first);
+        series.terms.push((modulus, first / (INTERVAL.hidden / unseen.min(1.0)).ln()));
         series
     }
 
@@ -142,9 +149,9 @@ impl FitReport {
     ) -> FitReport {
         let Uncertainty { interval, known_from: until } = uncertainty;
         let (rms, first) = (self.rms_misfit(), interval[0].0);
-        let warning = if ambiguity > TOLERABLE.max(OVER_SCATTER * rms) {
+        let warning = if ambiguity > INTERVAL.tolerable.max(INTERVAL.over_scatter * rms) {
             Some(FitWarning::FewSamples { uncertainty: ambiguity })
-        } else if nearest.rms_misfit() > TOLERABLE && nearest.is_systematic() {
+        } else if nearest.rms_misfit() > INTERVAL.tolerable && nearest.is_systematic() {
             Some(FitWarning::Systematic { rms: nearest.rms_misfit() })
         } else {
             outlier.or((until > first).then_some(FitWarning::BeginsLate { first, until }))
@@ -157,7 +164,7 @@ impl FitReport {
         let neighbours = self.samples.windows(2).filter(|pair| pair[0].function == pair[1].function);
         let (changes, pairs) = neighbours
             .fold((0.0, 0.0), |(sum, count), pair| (sum + (pair[1].misfit() - pair[0].misfit()).powi(2), count + 1.0));
-        changes < SYSTEMATIC * pairs * self.rms_misfit().powi(2)
+        changes < INTERVAL.systematic * pairs * self.rms_misfit().powi(2)
     }
 }
 

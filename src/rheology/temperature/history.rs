@@ -8,9 +8,6 @@ use crate::quadrature::GaussLegendre;
 use crate::rheology::TimeTemperature;
 use crate::rounded::{TIME, rounded};
 
-/// Number of temperatures among which the slowest creep of a run is sought.
-const TEMPERATURES: i32 = 64;
-
 /// A temperature that changes in time, the same everywhere in the bodies.
 ///
 /// Where all relaxation times share the shift factor a_T, a body at T(t) creeps as at the reference temperature, in
@@ -80,25 +77,19 @@ enum Temperatures {
     },
 }
 
-/// Points of the quadrature over a piece; two halves must agree with it.
-const POINTS: usize = 12;
-const AGREEMENT: f64 = 1e-13;
-/// Upper limit of pieces computed in a quadrature, and the agreement required of their sum at this limit.
-const MAX_PIECES: usize = 1 << 14;
-/// Pieces for which there is room from the start.
-const ROOM: usize = 32;
-const LEAST_AGREEMENT: f64 = 1e-5;
-/// Noise in the temperature limits the agreement: from `NOISY_PIECES` pieces on, the refinement ends when halving
-/// leaves more than the part `NOISE` of the difference.
-const NOISY_PIECES: usize = 512;
-const NOISE: f64 = 0.75;
-/// Relative tolerance of a length in t that belongs to a length in ξ. Only the order of magnitude matters.
-const LENGTH_TOLERANCE: f64 = 1e-3;
-/// Logarithms of the first guess of a length over the shortest, and of the longest over the first guess.
-const SHORTEST_LOG: f64 = 60.0;
-const LONGEST_LOG: f64 = 700.0;
-/// Relative change of the temperature within the resolution of a time, beyond which it jumps.
-const CONTINUOUS: f64 = 1e-9;
+/// The quadrature of the rate over a piece, chosen on the closures of tests/time/temperature.rs.
+struct Refinement {
+    /// A piece is halved until its halves agree with it to this part of the whole, near rounding: twice as much costs a
+    /// digit where the temperature bends.
+    agreement: f64,
+    /// Upper limit of pieces computed, which none of them reaches, nor half of it.
+    most_pieces: usize,
+    /// Noise limits the agreement: where there are many pieces, the refinement ends when halving leaves more than this
+    /// part of the difference. From half of it to twice as much the same is known of noise.
+    noise: f64,
+}
+
+const REFINEMENT: Refinement = Refinement { agreement: 1e-13, most_pieces: 1 << 14, noise: 0.75 };
 
 /// The error of moduli that change with temperature, which `what` does not cover.
 pub(crate) fn vertical_factors(what: &str) -> Error {
@@ -148,8 +139,8 @@ impl TemperatureHistory {
         if law.has_vertical_factors() {
             return Err(vertical_factors("a history of the temperature"));
         }
-        let pieces = Arc::new(Mutex::new([(); 2].map(|()| Vec::with_capacity(ROOM))));
-        Ok(TemperatureHistory { law, course, ageing: None, rule: GaussLegendre::new(POINTS), pieces })
+        let pieces = Arc::new(Mutex::new([(); 2].map(|()| Vec::with_capacity(32))));
+        Ok(TemperatureHistory { law, course, ageing: None, rule: GaussLegendre::new(12), pieces })
     }
 
     /// With physical ageing: a glass that was quenched an age t_e ago has times that grow as (t_e/t_ref)^μ, so that dξ
@@ -185,11 +176,9 @@ impl TemperatureHistory {
         Ok(1.0 / (self.law.shift_factor(self.at(time))? * aged))
     }
 
-    /// The slowest rate at which the reduced time passes until `last`.
+    /// The slowest rate at which the reduced time passes until `last`, at 64 temperatures.
     pub(crate) fn slowest(&self, last: f64) -> Result<f64> {
-        (0..=TEMPERATURES).try_fold(f64::INFINITY, |least: f64, k| {
-            Ok(least.min(self.rate(last * f64::from(k) / f64::from(TEMPERATURES))?))
-        })
+        (0..=64).try_fold(f64::INFINITY, |least: f64, k| Ok(least.min(self.rate(last * f64::from(k) / 64.0)?)))
     }
 
     /// The time–temperature law.
@@ -233,10 +222,10 @@ impl TemperatureHistory {
         }
     }
 
-    /// Whether the temperature jumps at a corner.
+    /// Whether the temperature jumps at a corner, within the resolution of a time.
     pub(crate) fn jumps_at(&self, corner: f64) -> bool {
         let before = self.at(corner.next_down());
-        (self.at(corner) - before).abs() > CONTINUOUS * before.abs()
+        (self.at(corner) - before).abs() > 1e-9 * before.abs()
     }
 
     /// Approximate time after `from` in which the reduced time grows by `reduced`; at most `most`.
@@ -253,8 +242,8 @@ impl TemperatureHistory {
                 _ => [f64::INFINITY, 0.0],
             }
         };
-        let bracket = [-SHORTEST_LOG, (most / guess).ln().min(LONGEST_LOG)];
-        Ok((guess * root(bracket, 0.0, LENGTH_TOLERANCE, excess).exp()).min(most))
+        // to a thousandth: the order of magnitude matters; exp(700) is finite
+        Ok((guess * root([-60.0, (most / guess).ln().min(700.0)], 0.0, 1e-3, excess).exp()).min(most))
     }
 
     /// ξ over a piece without corners inside.
@@ -286,7 +275,9 @@ impl TemperatureHistory {
         pieces.push((from, to, whole));
         let (mut sum, mut all, mut computed) = (0.0, whole, 0);
         let (mut apart, mut before) = (0.0, f64::INFINITY);
-        while !pieces.is_empty() && computed < MAX_PIECES && (pieces.len() < NOISY_PIECES || apart <= NOISE * before) {
+        let most = REFINEMENT.most_pieces;
+        while !pieces.is_empty() && computed < most && (pieces.len() < most / 32 || apart <= REFINEMENT.noise * before)
+        {
             computed += pieces.len();
             (apart, before) = (0.0, apart);
             for (from, to, whole) in pieces.drain(..) {
@@ -298,7 +289,7 @@ impl TemperatureHistory {
                 let (first, second) = (self.quadrature(from, middle)?, self.quadrature(middle, to)?);
                 all = all.max(first + second);
                 let difference = (first + second - whole).abs();
-                if difference <= AGREEMENT * all {
+                if difference <= REFINEMENT.agreement * all {
                     sum += first + second;
                 } else {
                     apart += difference;
@@ -308,7 +299,7 @@ impl TemperatureHistory {
             std::mem::swap(pieces, finer);
         }
         let sum = sum + pieces.iter().map(|(_, _, part)| part).sum::<f64>();
-        if !pieces.is_empty() && apart > LEAST_AGREEMENT * sum {
+        if !pieces.is_empty() && apart > 1e-5 * sum {
             let what = format!(
                 "the temperature between {} s and {} s is too rough for its reduced time, which is known to {:.0e}",
                 rounded(from, TIME),
@@ -335,9 +326,7 @@ impl TemperatureHistory {
         });
         invalid.map_or(Ok(sum), Err)
     }
-}
 
-impl TemperatureHistory {
     /// Shift rate, reference age and age at the start of an ageing body.
     pub(crate) fn age(&self) -> Option<[f64; 3]> {
         self.ageing.map(|Ageing { rate, reference, start }| [rate, reference, start])

@@ -7,9 +7,6 @@ use crate::rheology::{Rheology, ShiftedRheology};
 /// The gas constant \[J/(mol K)\] (exact since 2019).
 pub(crate) const GAS_CONSTANT: f64 = 8.314_462_618_153_24;
 
-/// No reference temperature of a WLF law in kelvin is as low.
-const LEAST_REFERENCE: f64 = 100.0;
-
 /// The dependence of creep on temperature: at T all times are a_T times the times at the reference temperature
 /// (thermorheologically simple bodies), and all moduli b_T times the moduli there, if the law has such vertical
 /// factors.
@@ -88,9 +85,9 @@ impl TimeTemperature {
     pub fn wlf(c1: f64, c2: f64, reference: f64) -> Result<TimeTemperature> {
         positive("WLF constant C1", c1)?;
         positive("WLF constant C2", c2)?;
-        // degrees Celsius: their differences from temperatures in kelvin would pass for great ones
+        // no reference is as low, but for degrees Celsius: their differences from kelvin would pass for great ones
         let allowed = "finite and at least 100 K: temperatures are in kelvin (20 °C is 293.15)";
-        within("reference temperature", reference, reference >= LEAST_REFERENCE, allowed)?;
+        within("reference temperature", reference, reference >= 100.0, allowed)?;
         Ok(TimeTemperature::by(Law::Wlf { c1, c2 }, reference))
     }
 
