@@ -40,8 +40,10 @@ pub(super) struct Numbers {
     /// Before any iteration r may be smooth, as what the far field has left is, and is worth more: it is to be smaller
     /// by this factor.
     smooth: f64,
-    /// The softest direction is looked for before the step ends, unless the state before was stiffer than this, and
-    /// the attraction no steeper since; and so often at most, as long as it is softer than this at its end.
+    /// Where the curvature was less than this along some direction, the softest one is looked for before the step ends,
+    /// unless the state before was stiffer than this, and the attraction no steeper since; and so often at most, as
+    /// long as it is softer than this at its end.
+    suspect: f64,
     near_fold: f64,
     looks: usize,
     very_soft: f64,
@@ -69,6 +71,7 @@ pub(super) const NUMBERS: Numbers = Numbers {
     part_left: 0.3,
     soft: 0.2,
     smooth: 0.1,
+    suspect: 0.85,
     near_fold: 0.25,
     looks: 4,
     very_soft: 0.005,
@@ -118,8 +121,9 @@ struct Trail {
     energy: Energy,
     /// y·r of the last direction, to which the next one is conjugate; 0 where it is to none.
     last: f64,
-    /// Curvatures along the last directions.
+    /// Curvatures along the last directions, and the least along any.
     recent: [f64; 8],
+    least: f64,
     /// The curvature along the softest direction, where it was looked for, and how often it was.
     softest: Option<f64>,
     looks: usize,
@@ -179,6 +183,7 @@ impl Descent<'_> {
             };
             let last = iteration % trail.recent.len();
             trail.recent[last] = along.curvature;
+            trail.least = trail.least.min(along.curvature);
             trail.last = match (self.go(along, &mut trail), steepest) {
                 (true, steepest) => steepest.unwrap_or(0.0),
                 (false, Some(_)) if trail.last > 0.0 => 0.0,
@@ -206,6 +211,7 @@ impl Descent<'_> {
             energy: self.energy(),
             last: 0.0,
             recent: [1.0; 8],
+            least: 1.0,
             softest: self.own.softest,
             looks: if self.own.looks { 0 } else { NUMBERS.looks },
             front: Front::new(held.region.cells(), held.region.folded()),
@@ -224,7 +230,7 @@ impl Descent<'_> {
         let stiffness = trail.softest.unwrap_or_else(|| self.least_stiffness());
         let is_suspect = match trail.softest {
             Some(_) => stiffness < NUMBERS.very_soft && self.ends(*gradient, soft),
-            None => stiffness < NUMBERS.near_fold,
+            None => (trail.least < NUMBERS.suspect || trail.iteration == 0) && stiffness < NUMBERS.near_fold,
         };
         if is_suspect && trail.looks < NUMBERS.looks {
             let curvature = self.soften(trail.looks);
