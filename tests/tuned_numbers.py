@@ -3,7 +3,7 @@
     python3 tests/tuned_numbers.py src/states adaptive_runs_on_states_err STATES=40
 
 copies the repository to target/tuned, where each scalar f64 constant of the source is a function, and each number of a
-struct of a mechanism a value, that the environment variable TUNED="src/states/control.rs:STEPS.aim=0.5" multiplies,
+struct of a mechanism a value, that the environment variable TUNED="src/states/control.rs:AIMS.aim=0.5" multiplies,
 builds the suite once, and runs one of its tests with every number of the files that begin with the first argument
 halved and doubled. What is printed are the lines of the test that differ. docs/maintainers/tuned_numbers.md has the
 results.

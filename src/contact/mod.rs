@@ -7,14 +7,13 @@
 //! | question | folder |
 //! |---|---|
 //! | how is a contact made from its parts? | `builder` |
-//! | what is the gap before deformation, and where may loads act? | `indenter` |
+//! | what is the gap before deformation, and where may loads act? | `equilibrium::indenter` |
 //! | what does a step change, and what was it before, or within, the last one? | `state` |
-//! | which part of the grid is computed? | `window` |
+//! | which part of the grid is computed? | `equilibrium::window` |
 //! | what is one step? | `step` |
 //! | what if the indenter moves? | `moving` |
 //! | what does a user read? | `read` |
 //! | how does a run go on after an interruption? | `checkpoint` |
-//! | what does a contact do for ranks? | `distributed` |
 
 // the documentation lists methods in the order of these modules: methods that drive a contact, then its results
 mod builder;

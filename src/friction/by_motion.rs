@@ -29,7 +29,7 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// What is missing of each load under this motion, over what friction can carry, if the tractions are found.
+    /// What is missing of each load under this motion, over its [scale](Problem::size), if the tractions are found.
     fn missing(&mut self, solution: &mut Solution, motion: [f64; 3]) -> Option<[f64; 3]> {
         let problem = self.problem;
         let mut drift = std::mem::take(&mut self.work.drift);

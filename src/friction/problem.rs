@@ -128,7 +128,7 @@ impl Problem<'_> {
         })
     }
 
-    /// The scale of what may be missing of a load: forces against what friction can carry, torques against its part.
+    /// The scale of what may be missing of a load: what is asked, and a thousandth of what friction can carry.
     pub(super) fn size(&self, k: usize) -> f64 {
         self.wanted[k].unwrap_or(0.0).abs() + 1e-3 * self.reach(k)
     }

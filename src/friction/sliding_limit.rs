@@ -7,7 +7,7 @@
 use crate::friction::problem::{Problem, dot, rigid};
 use crate::linalg;
 
-/// Halvings of the length below which a speed is rounded off.
+/// How often the length below which a speed is rounded off is quartered.
 const ROUNDINGS: usize = 40;
 /// Newton steps for each.
 const STEPS: usize = 30;

@@ -14,7 +14,7 @@ use crate::solver::Freedom;
 
 /// Error of the solver relative to that in time.
 const SOLVER_SHARE: f64 = 0.03;
-/// Surfaces that attract each other end their passes at a hundred tolerances of the solver.
+/// The same for surfaces that attract each other, whose passes end at up to a hundred tolerances of the solver.
 const SHARE_OF_PASSES: f64 = 0.03;
 /// An error of the solver counts so many times as much as its response to the surface that the body meets later: the
 /// errors of many steps add up.

@@ -19,7 +19,7 @@ use crate::states::contact::StatesContact;
 use crate::states::levels::Demand;
 
 /// How steps are judged: docs/maintainers/tuned_numbers.md has half and twice of each.
-struct Steps {
+struct Aims {
     /// Share of the tolerance that the error of a step aims at: errors of several steps add up, and over taps.
     aim: f64,
     aim_of_force: f64,
@@ -38,7 +38,7 @@ struct Steps {
     slight: f64,
 }
 
-const STEPS: Steps = Steps {
+const AIMS: Aims = Aims {
     aim: 0.08,
     aim_of_force: 0.1,
     aim_of_rates: 0.2,
@@ -112,7 +112,7 @@ impl Judge<StatesContact> for OnLevels {
     }
 
     fn accept(record: &Record<OnLevels>, contact: &mut StatesContact) {
-        contact.levels.merge(&contact.states, STEPS.slight * record.tolerance);
+        contact.levels.merge(&contact.states, AIMS.slight * record.tolerance);
     }
 
     fn turn(contact: &mut StatesContact) {
@@ -126,8 +126,8 @@ impl Judge<StatesContact> for OnLevels {
     }
 
     fn aim(record: &Record<OnLevels>, contact: &StatesContact, _: Span) -> f64 {
-        let of_load = if record.by_force { STEPS.aim_of_force } else { STEPS.aim };
-        let of_body = if contact.levels.has_dashpot() { STEPS.aim_of_rates } else { 1.0 };
+        let of_load = if record.by_force { AIMS.aim_of_force } else { AIMS.aim };
+        let of_body = if contact.levels.has_dashpot() { AIMS.aim_of_rates } else { 1.0 };
         of_body * of_load * record.tolerance
     }
 
@@ -151,7 +151,7 @@ impl Judge<StatesContact> for OnLevels {
         let scale = record.greatest[0].max(1e-3 * record.greatest_load);
         passage.first_event(
             touch,
-            STEPS.slight * record.tolerance * scale,
+            AIMS.slight * record.tolerance * scale,
             &mut |time| scratch.surface_at(time),
             &mut load,
         )
@@ -175,7 +175,7 @@ impl Judge<StatesContact> for OnLevels {
             contact.level(),
             cuts,
             (end - record.corner) / half,
-            if record.by_force { STEPS.swept_by_force } else { STEPS.swept },
+            if record.by_force { AIMS.swept_by_force } else { AIMS.swept },
         );
         if record.by_force {
             of_surface[1] = 0.0;
@@ -212,13 +212,15 @@ impl Judge<StatesContact> for OnLevels {
             let scales = [shear.displacement().abs().max(far * along), shear.force.abs().max(most * pressed)]
                 .map(|scale| 0.5 * scale);
             see([off[0], off[2]], scales);
-            // of no certain order where edges move in the step: the halves err by no more than they differ from the
-            // whole
+            // where bodies part, the halves agree although both pass over the slip: all that the last part loses is in
+            // doubt
             let held = if middle.level() > 0.0 { &middle.levels } else { &contact.levels };
             let released = held.shear.as_ref().map_or(0.0, |held| shear.lost - held.lost);
             let in_doubt = if halves.level() > 0.0 { 0.0 } else { released };
+            // of no certain order where edges move in the step: the halves err by no more than they differ from the
+            // whole
             see(
-                [(off[3] + in_doubt) / STEPS.of_halves, 0.0],
+                [(off[3] + in_doubt) / AIMS.of_halves, 0.0],
                 [shear.lost.max(done.max(far * most / SMALL) * along * pressed), 0.0],
             );
             see([off[4], 0.0], [f64::max(done, far * most) / SMALL * along * pressed, 0.0]);
@@ -226,9 +228,9 @@ impl Judge<StatesContact> for OnLevels {
             let time = end - record.corner;
             let lasting = |demand| halves.levels.lasting(&halves.states, demand, time / half);
             let lasting = contact.along(end, end - now, None)?.map_or(0.0, lasting);
-            let steps = STEPS.aim * lasting * (time / (end - now)).min(f64::from(PARTS_OF_RUN));
+            let steps = AIMS.aim * lasting * (time / (end - now)).min(f64::from(PARTS_OF_RUN));
             see([steps * off[1], 0.0], scales);
-            halves.levels.extrapolate_losses([contact, &*whole].map(|contact| &contact.levels), STEPS.of_halves);
+            halves.levels.extrapolate_losses([contact, &*whole].map(|contact| &contact.levels), AIMS.of_halves);
         }
         // what steps like this one add since the last corner, and nothing brings back, may be as large as the
         // tolerance: to the depth under a spring, and to the surface of bodies apart that resist rates alone
@@ -238,10 +240,10 @@ impl Judge<StatesContact> for OnLevels {
         if acts && by_spring || !acts && halves.levels.has_dashpot() {
             let time = time.min(end - record.corner);
             let steps = (time / (end - now)).min(f64::from(PARTS_OF_RUN));
-            see([STEPS.aim * halves.levels.lasting(&halves.states, demand, time / half) * steps * off, 0.0], greatest);
+            see([AIMS.aim * halves.levels.lasting(&halves.states, demand, time / half) * steps * off, 0.0], greatest);
         }
         let parts = report.force == 0.0 && contact.level() > 0.0;
-        Ok(if record.next == 0.0 || record.touches || parts { WITHOUT_ORDER } else { STEPS.of_halves } * worst)
+        Ok(if record.next == 0.0 || record.touches || parts { WITHOUT_ORDER } else { AIMS.of_halves } * worst)
     }
 
     /// Depths without contact are no scale.

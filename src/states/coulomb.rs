@@ -24,7 +24,7 @@ impl Friction {
         [self.coefficient, self.ratio]
     }
 
-    /// A unit of displacement, which levels count in parts of the coefficient and of the normal compliance \[m\].
+    /// What multiplies displacements of the levels: the coefficient, and the tangential compliance over the normal one.
     pub(super) fn of_displacement(&self) -> f64 {
         self.coefficient * self.ratio
     }

@@ -187,7 +187,7 @@ impl StatesContact {
         friction.demand(load.map_err(Error::along)?).map(Some)
     }
 
-    /// What the levels have along the surface, times the coefficient, if there is friction.
+    /// What the levels have along the surface, if there is friction.
     fn sheared<T>(&self, of: impl Fn(&Friction, &Shear) -> T) -> Option<T> {
         Some(of(self.scene.friction.as_ref()?, self.levels.shear.as_ref()?))
     }

@@ -6,7 +6,8 @@ pub(super) struct Course {
     /// Cells across the widest contact on the first mesh, and across a domain that is given.
     pub(super) across: f64,
     pub(super) across_given: f64,
-    /// How many times as fine the next mesh is: after the first one, and at least and at most.
+    /// How many times as fine the next mesh is: after the first one, or where a mesh does not resolve the attraction,
+    /// and at least and at most.
     pub(super) ratio: f64,
     pub(super) ratios: [f64; 2],
     /// Part of what is left to the mesh at which the next mesh aims.
@@ -21,11 +22,11 @@ pub(super) struct Course {
     /// do.
     pub(super) tolerances: [f64; 2],
     pub(super) on_finer: f64,
-    /// Part that is left to pressure fields in time, and the least of it.
+    /// Part that is left to pressure fields in time, and the least error in time that is asked of them.
     pub(super) of_fields: f64,
     pub(super) least_of_fields: f64,
-    /// Part for the residual of the solver, relative to the displacement, and for the series of a body that has none:
-    /// far below the errors of mesh and time.
+    /// Part for the residual of the solver, relative to the displacement, far below the errors of mesh and time; and
+    /// for the series of a body that has none.
     pub(super) of_solver: f64,
     pub(super) of_series: f64,
     /// Most times that the steps are shortened, that a domain is grown, and meshes on which a quantity may not

@@ -17,16 +17,17 @@ const CELLS: usize = 24;
 struct Search {
     /// Number of loads of a run whose tilt or load point changes that give a contact.
     of_turning: usize,
-    /// Maximum number of domains tried, each at most ten times as large or as small as the last.
+    /// Maximum number of domains tried.
     most_domains: usize,
-    /// The range of the part of a domain that the contact spans in one that is accepted; from no contact known, ...
+    /// A domain is accepted if the contact spans a part of it in this range.
     filled: [f64; 2],
-    /// ... the next domain is this times as long where the contact reaches its edge, and where nothing touches.
+    /// How many times as long the next one is where the contact reaches the edge, which is the most that any grows by,
+    /// and where nothing touches. None is less than a tenth as long.
     factors: [f64; 2],
-    /// Ratio of the domain to the rectangle of the contact, ...
+    /// Ratio of a domain that was found to the rectangle of the contact, and of the next one tried to it.
     to_contact: f64,
-    /// ... of the next domain tried to it, and its growth where a run reaches its edge.
     next_to_contact: f64,
+    /// How many times as long a domain becomes where a run reaches its edge.
     growth: f64,
 }
 

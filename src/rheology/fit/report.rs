@@ -25,8 +25,8 @@ impl FitSample {
     }
 }
 
-/// Maximum root mean square misfit of the nearest series to measurements that are accepted, and maximum scatter that is
-/// judged from few rows.
+/// Maximum root mean square misfit of the nearest series to measurements that are accepted; and maximum scatter of
+/// short tables, of rows that repeat one another, and of rows that go the wrong way.
 pub(crate) const MOST_MISFIT: f64 = 0.1;
 /// Creep that is less uncertain than this is known.
 pub(in crate::rheology) const KNOWN: f64 = 0.05;
@@ -52,7 +52,7 @@ pub enum FitWarning {
     },
     /// A sample contradicts the others: check it. It was left out of the fit or counts little, unless it is an end of a
     /// noisy creep curve, which may be right and is kept. The first row of a relaxation is often off, where the strain
-    /// rings or takes its time. Contacts do not warn.
+    /// rings or takes its time.
     Outlier {
         /// Its time \[s\] or angular frequency \[rad/s\].
         x: f64,
@@ -238,7 +238,7 @@ impl fmt::Display for FitReport {
         }
         if self.uncertainty() > 0.0 {
             match self.uncertainty() {
-                // within a factor of eleven: the number would say nothing
+                // beyond a factor of eleven the number would say nothing
                 uncertainty if uncertainty > 10.0 => write!(f, "; creep unknown at some times")?,
                 uncertainty => write!(f, "; creep uncertain by {:.1} % at most", 100.0 * uncertainty)?,
             }

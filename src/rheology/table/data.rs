@@ -199,7 +199,8 @@ pub(crate) fn validated(layout: Layout, rows: &mut [TableRow]) -> Result<Vec<Sam
 }
 
 /// The maximum deviation of sorted rows from a monotone curve: an error where it exceeds what the scatter of the
-/// rows around explains, or the relative `scatter`, if it is stated; a warning, if one row of a hundred or fewer does.
+/// rows around explains, or the relative `scatter`, if it is stated; a warning, if one row of a hundred or fewer
+/// does, by a tenth at most.
 pub(crate) fn wrong_way(layout: Layout, rows: &[TableRow], scatter: Option<f64>) -> Result<(f64, Option<FitWarning>)> {
     let Layout { table, columns, .. } = layout;
     let (mut greatest, mut knock): (f64, _) = (0.0, None);

@@ -194,10 +194,8 @@ impl Measurements {
     ///
     /// # Errors
     /// If a compliance decreases, a relaxation modulus increases, or a storage modulus decreases with the frequency,
-    /// by more than the scatter of the rows around explains, in
-    /// more than one row of a hundred;
-    /// if no series fits the table; or if the headings of
-    /// its file name moduli in tension.
+    /// by more than the scatter of the rows around explains, in more than one row of a hundred or by more than a tenth;
+    /// if no series fits the table; or if the headings of its file name moduli in tension.
     pub fn fit(&self) -> Result<CreepSeries> {
         self.fitted(Deformation::Shear)
     }
@@ -237,7 +235,7 @@ impl Measurements {
             hidden: FITTING.hidden,
         };
         // terms shorter than the first time have not fully decayed there
-        let times = [first / INTERVAL.hidden, search.times[1]];
+        let times = [first / INTERVAL.hidden_before, search.times[1]];
         let wider = Search { times, hidden: INTERVAL.hidden, ..search.clone() };
         let is_late = self.experiment == Experiment::Relaxation && samples[0].x > 0.0;
         let (averaged, outliers) = (if is_late { &wider } else { &search }).without_outliers(&averaged, self.scatter);

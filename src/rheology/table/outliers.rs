@@ -9,8 +9,8 @@ use crate::rheology::table::measured::FITTING;
 
 impl Search {
     /// The samples that do not contradict all others, and those that do, with their relative deviation from the fit of
-    /// the others; or, kept, the end that does so by half as much. `scatter` is the relative standard deviation of a
-    /// value, if it is stated.
+    /// the others; or, kept, the end that does so by [less](Scatter::doubtful). `scatter` is the relative
+    /// standard deviation of a value, if it is stated.
     pub(super) fn without_outliers(
         &self,
         samples: &[Sample],

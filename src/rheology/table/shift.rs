@@ -75,7 +75,7 @@ struct Difference {
 
 struct Pair<'a> {
     isotherms: [&'a Isotherm; 2],
-    /// Of each isotherm and column, at each row.
+    /// Of each isotherm and column, before each row.
     slopes: [Vec<Vec<[f64; 2]>>; 2],
     /// What a difference of each column costs as a rule. Were it less, isotherms would flee from an overlap that has
     /// outliers.
@@ -297,8 +297,8 @@ fn place(isotherm: &Isotherm, log_time: f64) -> Option<(usize, f64)> {
     (k < rows.len() && (0.0..=1.0).contains(&part)).then_some((k, part))
 }
 
-/// The slope of a column over ln t at each row, the median of the slopes between the rows around, which outliers move
-/// little (P. K. Sen, J. Am. Stat. Assoc. 63, 1968), and the variance of such a slope by least squares, over the
+/// The slope of a column over ln t before each row, the median of the slopes between the rows around, which outliers
+/// move little (P. K. Sen, J. Am. Stat. Assoc. 63, 1968), and the variance of such a slope by least squares, over the
 /// variance of a value.
 fn slopes(isotherm: &Isotherm, column: usize) -> Vec<[f64; 2]> {
     let points: Vec<[f64; 2]> =

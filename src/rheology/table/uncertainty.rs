@@ -21,8 +21,9 @@ pub(super) struct Interval {
     /// inside.
     deviations: f64,
     /// A body relaxes before the first sample from at most so many times the modulus measured there, by terms of at
-    /// least such a part of its time.
+    /// least its time over the other number.
     pub(super) hidden: f64,
+    pub(super) hidden_before: f64,
     /// Uncertainties and systematic misfits below this need no warning: half and twice do as well.
     pub(super) tolerable: f64,
     /// An uncertainty of more than this times the misfit is not due to the scatter of the samples: with one, tables are
@@ -33,8 +34,15 @@ pub(super) struct Interval {
     systematic: f64,
 }
 
-pub(super) const INTERVAL: Interval =
-    Interval { drawn: 16, deviations: 2.2, hidden: 10.0, tolerable: 5e-3, over_scatter: 2.0, systematic: 1.0 };
+pub(super) const INTERVAL: Interval = Interval {
+    drawn: 16,
+    deviations: 2.2,
+    hidden: 10.0,
+    hidden_before: 10.0,
+    tolerable: 5e-3,
+    over_scatter: 2.0,
+    systematic: 1.0,
+};
 
 /// An interval of the creep compliance of a table.
 #[derive(Debug, Clone)]

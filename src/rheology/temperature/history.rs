@@ -242,7 +242,7 @@ impl TemperatureHistory {
                 _ => [f64::INFINITY, 0.0],
             }
         };
-        // to a thousandth: the order of magnitude matters; exp(700) is finite
+        // to a thousandth, since only the order of magnitude matters; exp(700) is finite
         Ok((guess * root([-60.0, (most / guess).ln().min(700.0)], 0.0, 1e-3, excess).exp()).min(most))
     }
 

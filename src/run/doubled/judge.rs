@@ -24,7 +24,7 @@ pub(crate) const SMALL: f64 = 0.1;
 
 /// What a kind of contact knows of its steps, and keeps of a run, which a file holds as well.
 pub(crate) trait Judge<C: Contact>: Default + Clone + Debug + Send + Sync + 'static {
-    /// Order of a step, by which the next one is chosen.
+    /// The power of its length with which the error of a step grows, by which the next one is chosen.
     const ORDER: f64;
 
     /// Force, or depth of the body or of the far end of its spring.

@@ -52,6 +52,7 @@ impl ActiveSet {
             let solved = solve.solution.residual <= stop.tolerance && self.changes.any();
             if state.penetration > RULES.join_over_rms * state.rms() && !predicted && !solved {
                 let was_cut = std::mem::take(&mut self.was_cut);
+                // the deepest cells alone
                 let least = if was_cut { 0.999 * state.penetration } else { state.joining_depth() };
                 self.add_penetrating_cells(problem, least, solve.solution);
                 self.advance(problem, solve.solution, 0.0);

@@ -45,8 +45,8 @@ struct Rules {
     /// Pressures that leave are moved to the cells around. Pressures that carry more than this part of the force are
     /// dropped instead: the contact is another one.
     moved_share: f64,
-    /// So often cells that join, or corrections that follow one another, may bring no gain or no lowest residual. Then
-    /// the rest is rounding, or a search comes between.
+    /// So often cells may join without a gain: then the rest is rounding. So many iterations may pass without a new
+    /// lowest residual before a search comes between corrections.
     tries_without_gain: usize,
     /// Iterations without a new lowest residual after which the fall-back takes over.
     iterations_without_gain: usize,

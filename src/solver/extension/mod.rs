@@ -100,7 +100,7 @@ fn count_levels(cells: [usize; 2]) -> usize {
     cells[0].max(cells[1]).next_power_of_two().ilog2() as usize
 }
 
-/// Whether a rank holds the local rows alone of blocks of this height: of those beyond 3 each is as high as a band.
+/// Whether a rank holds the local rows alone of blocks of this level: from the fourth on a block is as high as a band.
 fn is_local(rows: &Rows, height: usize) -> bool {
     rows.are_shared() && height <= 3 && height < count_levels(rows.cells())
 }

@@ -28,7 +28,7 @@ use crate::solver::Solution;
 /// The numbers of a descent, and of its softest direction; curvatures are over those of the convex part. They were
 /// chosen on `ADHESION_FOLDS`, `ADHESION_SCENES` and the steps of `adhesion_work`: what each changes there is in
 /// docs/maintainers/tuned_numbers.md.
-pub(super) struct Numbers {
+pub(super) struct DescentNumbers {
     /// A descent ends where r, over the maximum traction, by which the force errs, is below so many tolerances of the
     /// solver, but no more than this, unless the tolerance is coarse: then below this part of it.
     tolerances: f64,
@@ -53,19 +53,19 @@ pub(super) struct Numbers {
     /// the length of so many steps of the convex part.
     pub(super) near: f64,
     pub(super) longest: f64,
-    /// What a line search leaves of the slope, and how often it tries.
+    /// What a line search leaves of the slope, and how often it, and other searches along a direction, try.
     pub(super) slope_left: f64,
     pub(super) tries: usize,
     /// The maximum change of the gap at first on the way from a state that is unstable, in ranges.
     pub(super) span: f64,
     /// The softest direction is looked for until its curvature is below this, or known to this part of it, and a
-    /// direction of curvature 1 would have grown by half this power of e beyond it.
+    /// direction of curvature 0 would have grown by half this power of e beyond it.
     pub(super) negative: f64,
     pub(super) precise: f64,
     pub(super) grown: f64,
 }
 
-pub(super) const NUMBERS: Numbers = Numbers {
+pub(super) const DESCENT: DescentNumbers = DescentNumbers {
     tolerances: 100.0,
     most_left: 1e-4,
     part_left: 0.3,
@@ -149,13 +149,13 @@ enum Place {
 impl AttractedStep<'_> {
     /// The largest |r| that ends a descent, over the maximum traction: the error is r over the curvature.
     pub(super) fn tolerance(&self, softness: f64) -> f64 {
-        self.limit() * (softness / NUMBERS.soft).clamp(1e-3, 1.0)
+        self.limit() * (softness / DESCENT.soft).clamp(1e-3, 1.0)
     }
 
     /// The change of s over the maximum traction that ends a step.
     pub(super) fn limit(&self) -> f64 {
         let tolerance = self.stop.tolerance;
-        (NUMBERS.tolerances * tolerance).min((NUMBERS.part_left * tolerance).max(NUMBERS.most_left))
+        (DESCENT.tolerances * tolerance).min((DESCENT.part_left * tolerance).max(DESCENT.most_left))
     }
 }
 
@@ -213,7 +213,7 @@ impl Descent<'_> {
             recent: [1.0; 8],
             least: 1.0,
             softest: self.own.softest,
-            looks: if self.own.looks { 0 } else { NUMBERS.looks },
+            looks: if self.own.looks { 0 } else { DESCENT.looks },
             front: Front::new(held.region.cells(), held.region.folded()),
         }
     }
@@ -223,20 +223,20 @@ impl Descent<'_> {
         let recent = trail.recent.iter().fold(1.0_f64, |least, &soft| least.min(soft));
         let soft = if trail.iteration == 0 { self.own.softness } else { recent };
         let soft = soft.min(trail.softest.unwrap_or(1.0));
-        let share = if trail.iteration == 0 { NUMBERS.smooth } else { 1.0 };
+        let share = if trail.iteration == 0 { DESCENT.smooth } else { 1.0 };
         if gradient.greatest > share * self.problem.tolerance(soft) {
             return Place::Slope;
         }
         let stiffness = trail.softest.unwrap_or_else(|| self.least_stiffness());
         let is_suspect = match trail.softest {
-            Some(_) => stiffness < NUMBERS.very_soft && self.ends(*gradient, soft),
-            None => (trail.least < NUMBERS.suspect || trail.iteration == 0) && stiffness < NUMBERS.near_fold,
+            Some(_) => stiffness < DESCENT.very_soft && self.ends(*gradient, soft),
+            None => (trail.least < DESCENT.suspect || trail.iteration == 0) && stiffness < DESCENT.near_fold,
         };
-        if is_suspect && trail.looks < NUMBERS.looks {
+        if is_suspect && trail.looks < DESCENT.looks {
             let curvature = self.soften(trail.looks);
             trail.looks += 1;
             (*gradient, trail.energy, trail.last) = (self.gradient(), self.energy(), 0.0);
-            if curvature < NUMBERS.unstable {
+            if curvature < DESCENT.unstable {
                 trail.softest = None;
                 return Place::Saddle(Along { length: self.way_out(*gradient), curvature });
             }
@@ -277,7 +277,7 @@ impl Descent<'_> {
     /// Goes along the direction as far as E falls; returns whether it does.
     fn go(&mut self, along: Along, trail: &mut Trail) -> bool {
         let mut length = along.length;
-        for _ in 0..if length > 0.0 { NUMBERS.tries } else { 0 } {
+        for _ in 0..if length > 0.0 { DESCENT.tries } else { 0 } {
             self.go_along(length);
             let tried = self.swap();
             let rise = (tried.value - trail.energy.value) / trail.energy.scale;

@@ -1,8 +1,9 @@
 //! The edge of a line contact that runs over many cells within a step.
 //!
 //! An iteration in the gap moves a running edge by about the zone in which the attraction acts. Where cells were lost
-//! the profile beside the edge is tried further on: by the cells just lost, after each success by twice as many, and by
-//! at most an eighth of the cells that are left, since the edge may stop. The trial is kept where the energy falls.
+//! the profile beside the edge is tried further on: by the cells just lost, after each success by twice as many, and
+//! each edge by at most a sixteenth of the longest part in contact, since it may stop. The trial is kept where the
+//! energy falls.
 
 /// How the edge has moved so far.
 #[derive(Debug, Clone, Copy)]

@@ -1,7 +1,7 @@
 //! Gradient, direction and length of an iteration in the gap.
 
 use super::balance::Operators;
-use super::descent::{Along, Descent, Gradient, NUMBERS};
+use super::descent::{Along, DESCENT, Descent, Gradient};
 use super::passes::InGap;
 use super::softest::{Convex, softest};
 use crate::attraction::Attraction;
@@ -41,7 +41,7 @@ impl Descent<'_> {
         if balance.held {
             // cells at the wall that open join the mean
             let mut joins = f64::NEG_INFINITY;
-            for _ in 0..NUMBERS.tries {
+            for _ in 0..DESCENT.tries {
                 let [sum, count] = rows.sum_terms(|k| (is_open(k) || r[k] < joins).then_some([r[k], 1.0]));
                 multiplier = sum / count.max(1.0);
                 if std::mem::replace(&mut joins, multiplier) == multiplier {
@@ -86,7 +86,7 @@ impl Descent<'_> {
         let beta = if before > 0.0 { f64::max((steepest - overlap) / before, 0.0) } else { 0.0 };
         let old = &*direction;
         let [along] = rows.sum_terms(|k| is_free(k).then(|| [r[k] * (beta * old[k] - (y[k] - level))]));
-        // or the search begins anew
+        // a direction that descends by less than a thousandth of the steepest one is given up for that one
         let beta = if beta > 0.0 && along < -1e-3 * steepest { beta } else { 0.0 };
         for_each_band([&mut *direction], |first, [direction]| {
             for (d, k) in direction.iter_mut().zip(first..) {
@@ -126,17 +126,18 @@ impl Descent<'_> {
             })
         });
         let curvature = (convex - softened) / convex;
+        // or nearly so
         let bends_down = curvature <= 1e-3;
-        let mut length = if bends_down { -NUMBERS.longest * start / convex } else { -start / (convex * curvature) };
+        let mut length = if bends_down { -DESCENT.longest * start / convex } else { -start / (convex * curvature) };
         let (mut low, mut high) = (0.0, None);
-        for _ in 0..NUMBERS.tries {
+        for _ in 0..DESCENT.tries {
             let at = self.slope(gradient, length) + length * convex;
-            if at.abs() <= NUMBERS.slope_left * start.abs() {
+            if at.abs() <= DESCENT.slope_left * start.abs() {
                 break;
             }
             if at < 0.0 {
                 low = length;
-                if bends_down && gradient.greatest > NUMBERS.near {
+                if bends_down && gradient.greatest > DESCENT.near {
                     break;
                 }
                 length = high.map_or(2.0 * length, |high| 0.5 * (low + high));
@@ -182,8 +183,8 @@ impl Descent<'_> {
     }
 
     /// Looks for the softest direction of the open cells: writes it, with its M d/c, so long that it changes the gap by a
-    /// [part](super::descent::Numbers::span) of the range, and returns its curvature. It overwrites r, and computes q
-    /// afresh.
+    /// [part](super::descent::DescentNumbers::span) of the range, and returns its curvature. It overwrites r, and
+    /// computes q afresh.
     ///
     /// The search begins at random: the last direction has the symmetry of the state, and may have none of the one that
     /// breaks it. Each look of a descent begins anew: of two modes that are soft alike the last one has found a mix, and
@@ -204,7 +205,7 @@ impl Descent<'_> {
         operators.tractions(x, q);
         let Some(curvature) = found else { return 1.0 };
         let most = v.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
-        let scale = NUMBERS.span * law.range() / most;
+        let scale = DESCENT.span * law.range() / most;
         v.iter_mut().chain(image).for_each(|value| *value *= scale);
         curvature
     }
@@ -217,7 +218,7 @@ impl Descent<'_> {
         let InGap { direction, image, .. } = &self.own.in_gap;
         let convex = self.operators.rows().sum_of_pairs(direction, image, |d, image| d * image);
         let mut length = 1.0;
-        for _ in 0..NUMBERS.tries {
+        for _ in 0..DESCENT.tries {
             if self.slope(gradient, 2.0 * length) + 2.0 * length * convex >= 0.0 {
                 break;
             }

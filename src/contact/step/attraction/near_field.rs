@@ -103,9 +103,9 @@ impl Descent<'_> {
                 gap.iter_mut().zip(&self.own.far[first..]).for_each(|(gap, far)| *gap += c * far);
             });
             self.with_near_field(Descent::run)?;
-            let ([change, most], next) = self.correct(relaxation);
-            let most = c * most * problem.scene.ground.softening / problem.law.traction(0.0);
-            if most <= ROUNDS.change * problem.tolerance(self.own.softness) {
+            let (most, next) = self.correct(relaxation);
+            let change = c * most * problem.scene.ground.softening / problem.law.traction(0.0);
+            if change <= ROUNDS.change * problem.tolerance(self.own.softness) {
                 self.join();
                 return Ok(());
             }
@@ -152,25 +152,23 @@ impl Descent<'_> {
 
     /// The change of F (z − s), and the part of it that Aitken's rule takes after two rounds (Irons & Tuck, Int. J. Numer.
     /// Methods Eng. 1, 1969): where contact and attraction take most of the grid, F is no small part. Returns
-    /// Σ (z + s) |ΔF (z − s)| and the maximum |ΔF (z − s)|, and the part; `relaxation` is that of the round before.
-    fn correct(&mut self, relaxation: Option<f64>) -> ([f64; 2], f64) {
+    /// the maximum |ΔF (z − s)| and the part; `relaxation` is that of the round before.
+    fn correct(&mut self, relaxation: Option<f64>) -> (f64, f64) {
         let Descent { own, operators, trial, .. } = self;
-        let Solution { pressure, attraction, potential, .. } = &trial.solution;
+        let potential = &trial.solution.potential;
         let (exact, far, changes) = own.image_of_net(&trial.solution, operators.window);
         operators.counts.convolutions += 1;
-        let (mut most, mut sums) = (0.0_f64, [0.0; 3]);
+        let (mut most, mut along, mut square) = (0.0_f64, 0.0, 0.0);
         for (k, change) in changes.iter_mut().enumerate() {
             let before = std::mem::replace(change, exact[k] - potential[k] - far[k]);
             let less = *change - before;
             most = most.max(change.abs());
-            let added = [(pressure[k] + attraction[k]) * change.abs(), before * less, less * less];
-            (0..3).for_each(|sum| sums[sum] += added[sum]);
+            (along, square) = (along + before * less, square + less * less);
         }
-        let [changed, along, square] = sums;
         let next = relaxation.map_or(1.0, |last| {
             if square > 0.0 { (-last * along / square).clamp(ROUNDS.relaxation[0], ROUNDS.relaxation[1]) } else { last }
         });
-        ([changed, most], next)
+        (most, next)
     }
 
     /// Writes N (z − s) to the potential, and what it lacks of K (z − s) to the far field.

@@ -16,7 +16,7 @@ pub(super) struct Jumps {
     unaccounted: f64,
     /// Each half of a smooth step releases a quarter of what the whole does, and one half a jump.
     in_a_half: f64,
-    /// A part of a step with a jump releases more than this share of what the step released.
+    /// Besides what is smooth, a part of a step with a jump releases more than this share of what the step released.
     pub(super) in_a_part: f64,
     /// The shortest parts of a step.
     pub(super) shortest: f64,
@@ -44,8 +44,8 @@ pub(crate) struct Attracted {
     pub(super) far: Vec<f64>,
     /// What it lacks after the last round.
     pub(super) change: Vec<f64>,
-    /// The least curvature of the energy over the curvature of its convex part, among the directions of the last
-    /// descent.
+    /// The least curvature of the energy over the curvature of its convex part, among the last directions of the last
+    /// descent and the softest one.
     pub(super) softness: f64,
     /// Whether a state is looked at for a direction along which the energy bends down, and the least curvature that
     /// this step has found so.

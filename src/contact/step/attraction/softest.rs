@@ -3,7 +3,7 @@
 //! The quotient of what softens along a direction, Σ w v², and of what the convex part stiffens, Σ v M v, is raised
 //! by conjugate gradients (Bradbury & Fletcher, Numer. Math. 9, 1966).
 
-use super::descent::NUMBERS;
+use super::descent::DESCENT;
 use crate::parallel::{Rows, for_each_band};
 
 /// The convex part of an energy at a state.
@@ -70,9 +70,9 @@ impl Quotient {
     /// turn on one of curvature κ.
     fn is_found(&self, left: f64, turn: usize, cells: usize) -> bool {
         let curvature = self.curvature().abs();
-        let grown = 4.0 * curvature.sqrt() * turn as f64 >= 0.5 * (cells as f64).ln() + NUMBERS.grown;
+        let grown = 4.0 * curvature.sqrt() * turn as f64 >= 0.5 * (cells as f64).ln() + DESCENT.grown;
         // of a direction that is exact rounding leaves something
-        left <= 1e-6 || grown && left <= NUMBERS.precise * curvature
+        left <= 1e-6 || grown && left <= DESCENT.precise * curvature
     }
 }
 
@@ -95,7 +95,7 @@ pub(super) fn softest(
     let (mut quotient, mut before) = (Quotient { softened, convex: stiffened }, 0.0);
     for count in 0..100 {
         quotient.raise(rows, w, &mut v, &mut turn);
-        if !quotient.is_positive() || quotient.curvature() < NUMBERS.negative {
+        if !quotient.is_positive() || quotient.curvature() < DESCENT.negative {
             break;
         }
         let (now, last) = ([&*v[0], &*v[1]], [&*turn[0], &*turn[1]]);

@@ -45,7 +45,7 @@ pub(in crate::states) struct Shear {
     pub(in crate::states) slid: f64,
     /// Level up to which the contact sticks \[m²\].
     pub(in crate::states) stick: f64,
-    /// Maximum so far of |motion|, of |force| and of |work|.
+    /// Maximum so far of |displacement|, of |force| and of |work|.
     pub(in crate::states) maxima: [f64; 3],
     /// Work that the body has done along the surface, and the part of it that slip has dissipated \[J\].
     pub(in crate::states) work: f64,

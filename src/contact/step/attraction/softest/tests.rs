@@ -75,8 +75,8 @@ fn the_softest_direction_is_that_of_a_dense_solver() {
         assert!((found - 1.0 + softened / convex).abs() < 1e-9, "{seed}: {found}, of v {}", 1.0 - softened / convex);
         assert!(found > exact - 1e-9, "{seed}: {found} {exact}");
         let left = match exact {
-            exact if exact < NUMBERS.negative => NUMBERS.negative,
-            exact if exact < 0.2 || seed % 3 > 0 => exact + NUMBERS.precise * exact.abs(),
+            exact if exact < DESCENT.negative => DESCENT.negative,
+            exact if exact < 0.2 || seed % 3 > 0 => exact + DESCENT.precise * exact.abs(),
             _ => 1.0,
         };
         assert!(found <= left, "{seed}: {found} {exact}");
