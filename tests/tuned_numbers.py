@@ -106,7 +106,7 @@ def with_functions(path, text, own, shown, names):
 def fields(found):
     """Names and values of the numbers of a struct; none where it holds anything else."""
     pairs = FIELD.findall(" ".join(found[4].split()))
-    return pairs if all(re.fullmatch(r"[\[\]\d\s.,e*/+()_-]+|.*\bEPSILON\b.*", value.strip()) for _, value in pairs) else []
+    return pairs if all(re.fullmatch(r"[\[\]\d\s.,e*/+()<_-]+|.*\b(?:EPSILON|PENETRATION_SLACK)\b.*", value.strip()) for _, value in pairs) else []
 
 
 def with_statics(path, text):

@@ -22,7 +22,7 @@ use crate::states::solved_curve::SolvedCurve;
 
 /// How levels are found for the fields of a run in cells.
 struct Beside {
-    /// Levels of the first elastic contacts, from the greatest of the run: so many, each over the next.
+    /// Levels of the first elastic contacts, from the maximum of the run: so many, each over the next.
     first_levels: i32,
     ratio: f64,
     /// Parts of the accuracy that the solver of an elastic body may leave, steps and the curve may, and the change of
@@ -30,7 +30,7 @@ struct Beside {
     of_solver: f64,
     of_run: f64,
     of_change: f64,
-    /// Greatest number of contacts that are added to the curve for a field, and times that the field is found anew.
+    /// Maximum number of contacts that are added to the curve for a field, and times that the field is found anew.
     most_added: usize,
     most_attempts: u32,
 }

@@ -13,7 +13,7 @@ use crate::states::profile::Profile;
 pub(super) struct Repetition {
     /// Tolerance of the steps that show how long steps of a run may be.
     coarse: f64,
-    /// Greatest number of steps that are halved.
+    /// Maximum number of steps that are halved.
     most_halved: usize,
     /// Steps twice as long err by so many times more, the order being 2.
     of_longer: f64,
@@ -25,7 +25,7 @@ pub(super) struct Repetition {
     shortest: f64,
     /// The last step before a time, over the time since the start.
     last_step: f64,
-    /// The accuracy of a field holds relative to this part of the greatest force at least.
+    /// The accuracy of a field holds relative to this part of the maximum force at least.
     pub(super) least_force: f64,
 }
 

@@ -38,9 +38,9 @@ pub struct Sweep {
 
 /// How close the states of a sweep are.
 struct Density {
-    /// The smallest level of a sweep over the greatest.
+    /// The minimum level of a sweep over the maximum.
     least_level: f64,
-    /// The level, over the greatest, below which a contact that stays the same is the smallest.
+    /// The level, over the maximum, below which a contact that stays the same is the smallest.
     linear_level: f64,
     /// Levels closer than by this factor have no state between them.
     finest: f64,

@@ -149,7 +149,7 @@ fn first_mesh(runs: &mut Runs<'_, '_>, mut domain: Domain, most_cells: usize) ->
     let mut base = level;
     let (common, mut stops, mut steps_order) = (base.times.clone(), Vec::new(), 0.0);
     let mut in_time = Vec::new();
-    // the second of the two errs by a part of their difference itself
+    // the error of the second is a part of their difference itself
     let of_both = COURSE.shorter / (COURSE.shorter - 1.0);
     for tries in 0..=COURSE.most_shortened {
         let fine = runs.level(base.grid.clone(), (tolerance / COURSE.shorter).max(COURSE.tolerances[0]), &common)?;

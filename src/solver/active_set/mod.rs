@@ -30,13 +30,13 @@ mod iteration;
 mod membership;
 
 use crate::kernel::{LocalKernel, Workspace};
-use crate::solver::{Bands, ContactSet, ModeCoefficients, Outcome, Preconditioner, Search, Solve};
+use crate::solver::{Bands, ContactSet, ModeCoefficients, Outcome, PENETRATION_SLACK, Preconditioner, Search, Solve};
 use crate::sum::greatest;
 
 /// When A changes, and when the search for it ends.
 struct Rules {
     /// Cells join A when the deepest penetration exceeds this many times rms |r|. It must be below the
-    /// [slack](crate::solver::PENETRATION_SLACK) of penetration, or a state could neither improve nor converge.
+    /// [slack](PENETRATION_SLACK) of penetration, or a state could neither improve nor converge.
     join_over_rms: f64,
     /// Cells leave A when rms (c p⁻/m), the gap equivalent to their negative pressure, exceeds this part of rms |r|.
     leave_over_rms: f64,
@@ -53,7 +53,7 @@ struct Rules {
 }
 
 const RULES: Rules = Rules {
-    join_over_rms: 2.0,
+    join_over_rms: 0.2 * PENETRATION_SLACK,
     leave_over_rms: 0.1,
     correction_length: 0.9,
     moved_share: 0.1,

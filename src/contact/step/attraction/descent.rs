@@ -29,8 +29,8 @@ use crate::solver::Solution;
 /// chosen on `ADHESION_FOLDS`, `ADHESION_SCENES` and the steps of `adhesion_work`: what each changes there is in
 /// docs/maintainers/tuned_numbers.md.
 pub(super) struct DescentNumbers {
-    /// A descent ends where r, over the maximum traction, by which the force errs, is below so many tolerances of the
-    /// solver, but no more than this, unless the tolerance is coarse: then below this part of it.
+    /// A descent ends where r over the maximum traction, which is the error of the force, is below so many tolerances of
+    /// the solver, but no more than this, unless the tolerance is coarse: then below this part of it.
     tolerances: f64,
     most_left: f64,
     part_left: f64,

@@ -121,8 +121,8 @@ impl Levels {
         self.shear.as_ref().map(|shear| [shear.lost, shear.work - shear.lost - self.stored_along()])
     }
 
-    /// Continues what a step in halves dissipates by so much of its difference to that of the whole: every step errs in
-    /// the same sense, and nothing brings it back.
+    /// Continues what a step in halves dissipates by so much of its difference to that of the whole: the errors of
+    /// all steps have one sign, and nothing brings it back.
     pub(in crate::states) fn extrapolate_losses(&mut self, [before, whole]: [&Levels; 2], share: f64) {
         let [Some(before), Some(own), Some(whole)] = [before, &*self, whole].map(Levels::dissipated) else { return };
         let [slip, creep] = [0, 1].map(|k| f64::max(before[k] - own[k], share * (own[k] - whole[k])));
