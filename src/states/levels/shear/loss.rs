@@ -75,8 +75,10 @@ impl Levels {
             shear.slid += left;
         }
         (shear.force, shear.motion) = (force, motion);
-        // it slides under what it carries then, not under what it carried while it stuck
-        let sliding = if stuck > 0.0 && !shear.whole { force } else { 0.5 * (before + force) };
+        // a contact that stuck slides from where what it carries rises to f P, as at the end, or where f P falls to it
+        let held = stuck > 0.0 && !shear.whole;
+        let at_first = if held && sense * before < sense * force { force } else { before };
+        let sliding = 0.5 * (at_first + force);
         lost += if let Demand::Force(_) = along { 0.0 } else { sliding * left };
         let bottom = stick.checked_sub(1).map_or(0.0, |k| groups[k].top);
         lost += begun * travelled(level - bottom, edge - from, from - bottom);
