@@ -28,9 +28,9 @@ struct Aims {
     /// Two halves err by a third of their difference to the whole, as where the order is two: the curve between states
     /// has kinks in its curvature.
     of_halves: f64,
-    /// Levels that were swept in a step are resolved by its length alone: their error does not add up over the steps,
-    /// but over the taps that come back to them, and counts so much, chosen on 300 random runs that tap and part; less
-    /// where forces are given throughout.
+    /// Levels that were swept in a step, by the edge or by slip, are resolved by its length alone: their error does not
+    /// add up over the steps, but over the taps that come back to them, and counts so much, chosen on 300 random runs
+    /// that tap and part; less where forces are given throughout.
     swept: f64,
     swept_by_force: f64,
     /// What hardly counts, in tolerances: the overshoot of a step that ends where bodies touch, and the merging of
@@ -202,7 +202,8 @@ impl Judge<StatesContact> for OnLevels {
         if whole.level() > 0.0 || halves.level() > 0.0 {
             see([0, 1].map(|k| ended[0][k] - ended[1][k]), scales);
         }
-        if let (Some(off), Some(shear)) = (whole.levels.shear_distance(&halves.levels), &halves.levels.shear) {
+        let off = whole.levels.shear_distance(&halves.levels, &contact.levels, AIMS.swept);
+        if let (Some(off), Some(shear)) = (off, &halves.levels.shear) {
             // early in a run, what acts along the surface is small beside what will act
             let along = SMALL * record.greatest_along[0] / halves.reached_along();
             let [along, pressed] =
@@ -219,11 +220,8 @@ impl Judge<StatesContact> for OnLevels {
             let in_doubt = if halves.level() > 0.0 { 0.0 } else { released };
             // of no certain order where edges move in the step: the halves err by no more than they differ from the
             // whole
-            see(
-                [(off[3] + in_doubt) / AIMS.of_halves, 0.0],
-                [shear.lost.max(done.max(far * most / SMALL) * along * pressed), 0.0],
-            );
-            see([off[4], 0.0], [f64::max(done, far * most) / SMALL * along * pressed, 0.0]);
+            let done = done * along * pressed;
+            see([(off[3] + in_doubt) / AIMS.of_halves, off[4]], [shear.lost.max(done), done / SMALL]);
             // levels that stick keep what a step has moved them by
             let time = end - record.corner;
             let lasting = |demand| halves.levels.lasting(&halves.states, demand, time / half);

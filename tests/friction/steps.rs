@@ -126,6 +126,30 @@ fn what_parts_loses_what_it_had_stored_unless_it_is_let_go() {
     }
 }
 
+/// A spring holds a body along the surface while its load falls to where it slides: steps in which sliding begins lose
+/// what many steps lose, by the mean of the force at which it began and that at the end.
+#[test]
+fn sliding_that_begins_as_the_load_falls_loses_the_mean_force_over_its_way() {
+    let lost = |parts: u32| {
+        let mut contact = ball(&zener(), 0.4);
+        contact.step_sheared(0.0, Load::force(1.0), Load::force(0.2)).unwrap();
+        // soft beside the contact, whose slip before it slides is little then
+        let stiffness = 1e-3 * 0.2 / contact.lateral_displacement();
+        let along = Load::spring(stiffness, contact.lateral_displacement() + 0.2 / stiffness);
+        for k in 1..=parts {
+            let normal = 1.0 - 0.8 * f64::from(k) / f64::from(parts);
+            contact.step_sheared(0.0, Load::force(normal), along).unwrap();
+        }
+        contact.lateral_work().slip
+    };
+    let many = lost(4096);
+    for (parts, most) in [(1, 1e-3), (2, 1e-3), (3, 1e-3), (7, 3e-4), (64, 2e-5)] {
+        let off = lost(parts) / many - 1.0;
+        println!("{parts}: {off:e}");
+        assert!(many > 0.0 && off.abs() < most, "{parts}: {off:e}");
+    }
+}
+
 /// Displacements and springs that were read off a run under forces bring the forces back.
 #[test]
 fn motions_and_springs_bring_forces_back() {

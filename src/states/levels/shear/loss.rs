@@ -95,17 +95,22 @@ impl Levels {
     }
 
     /// How far apart two outcomes of one step are along the surface: ∫ |δU| dδ, the most that their displacements can
-    /// ever differ by; the displacements; the forces; what slip has dissipated; and the work.
-    pub(in crate::states) fn shear_distance(&self, other: &Levels) -> Option<[f64; 5]> {
-        let (one, two) = (self.shear.as_ref()?, other.shear.as_ref()?);
+    /// ever differ by; the displacements; the forces; what slip has dissipated; and the work. In the first, levels that
+    /// began to slip after the state `before` count as `swept`.
+    pub(in crate::states) fn shear_distance(&self, other: &Levels, before: &Levels, swept: f64) -> Option<[f64; 5]> {
+        let (one, two, from) = (self.shear.as_ref()?, other.shear.as_ref()?, before.shear.as_ref()?);
         let (own, others) = (self.history.sheared()?, other.history.sheared()?);
+        // after a turn all sticks, and slips from the edge again
+        let stick = one.stick.min(two.stick);
+        let edge = if stick < from.stick { from.stick } else { before.level };
         let (mut far, mut k, mut lower) = (0.0, 0, 0.0);
         for (group, now) in other.groups.iter().zip(others) {
             loop {
                 let inside = self.groups.get(k).filter(|own| own.top < group.top);
-                let upper = inside.unwrap_or(group).motions.depth;
-                far += (now - own.get(k).copied().unwrap_or(0.0)).abs() * (upper - lower);
-                lower = upper;
+                let Group { top, motions, .. } = *inside.unwrap_or(group);
+                let counts = if stick < top && top <= edge { swept } else { 1.0 };
+                far += counts * (now - own.get(k).copied().unwrap_or(0.0)).abs() * (motions.depth - lower);
+                lower = motions.depth;
                 if inside.is_none() {
                     break;
                 }
