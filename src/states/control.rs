@@ -220,7 +220,8 @@ impl Judge<StatesContact> for OnLevels {
             let in_doubt = if halves.level() > 0.0 { 0.0 } else { released };
             // of no certain order where edges move in the step: the halves err by no more than they differ from the
             // whole
-            let done = done * along * pressed;
+            // what begins to slip has lost next to nothing yet
+            let done = done.max(far * most) * along * pressed;
             see([(off[3] + in_doubt) / AIMS.of_halves, off[4]], [shear.lost.max(done), done / SMALL]);
             // levels that stick keep what a step has moved them by
             let time = end - record.corner;
