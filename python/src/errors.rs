@@ -62,8 +62,8 @@ pub fn raise(error: &Error) -> PyErr {
         return raised;
     }
     let text = with_causes(error);
-    if let Error::Slides { over_limit, direction: None, .. } = error {
-        return slides(text, *over_limit, None);
+    if let Error::Slides { over_limit, direction, .. } = error {
+        return slides(text, *over_limit, *direction);
     }
     match error.kind() {
         // a name that is not allowed, as any other value

@@ -144,7 +144,6 @@ impl Error {
             Error::NothingToTouch { .. } => (Value, "nothing_to_touch"),
             Error::ZoneNotResolved { .. } => (Value, "zone_not_resolved"),
             Error::PulledOff { .. } => (Value, "pulled_off"),
-            Error::Slides { direction: None, .. } => (Unsupported, "slides"),
             Error::Slides { .. } => (Value, "slides"),
             Error::Shrinks { .. } => (Unsupported, "shrinks"),
             Error::Unreadable { .. } => (File, "unreadable"),

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::error::{Refusal, Result};
+use crate::error::{Error, Refusal, Result};
 use crate::load::{Load, LoadHistory};
 use crate::run::{Contact, OwnedOrBorrowed};
 
@@ -49,9 +49,13 @@ impl<'a> Histories<'a> {
         load: impl Fn(&dyn LoadHistory, bool) -> Result<Load>,
     ) -> Result<()> {
         loads.clear();
-        let along = contact.lateral().iter().map(|along| (&**along, true));
-        let mut all = self.each().map(|history| (history, contact.attracts())).chain(along);
-        all.try_for_each(|(history, pulls)| load(history, pulls).map(|load| loads.push(load)))
+        for history in self.each() {
+            loads.push(load(history, contact.attracts())?);
+        }
+        for along in contact.lateral() {
+            loads.push(load(&**along, true).map_err(Error::along)?);
+        }
+        Ok(())
     }
 
     /// The first breakpoint of any after `now`, those of what acts along the surface too; infinite if there is none.
