@@ -1,6 +1,4 @@
-//! Work along the surface, and names of what acts there.
-
-use crate::error::Error;
+//! Work along the surface.
 
 /// Where the work along the surface went, since the contact was made \[J\]: work = slip + stored + creep.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -21,23 +19,5 @@ impl LateralWork {
     /// By what the bodies hold of the work now.
     pub(crate) fn new(work: f64, slip: f64, stored: f64) -> LateralWork {
         LateralWork { work, slip, stored, creep: work - slip - stored }
-    }
-}
-
-impl Error {
-    /// The same error of a load along the surface.
-    pub(crate) fn along(self) -> Error {
-        let of = |field| match field {
-            "normal force" => "force along the surface",
-            "approach" => "displacement along the surface",
-            other => other,
-        };
-        match self {
-            Error::OutOfRange { field, value, allowed } => Error::OutOfRange { field: of(field), value, allowed },
-            Error::LoadOutOfRange { time, field, value, allowed } => {
-                Error::LoadOutOfRange { time, field: of(field), value, allowed }
-            }
-            other => other,
-        }
     }
 }

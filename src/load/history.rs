@@ -23,3 +23,21 @@ impl dyn LoadHistory + '_ {
         load.validated_at(t, attracts).map_err(|error| self.failure().map_or(error, Error::User))
     }
 }
+
+impl Error {
+    /// The same error of a load along the surface.
+    pub(crate) fn along(self) -> Error {
+        let of = |field| match field {
+            "normal force" => "force along the surface",
+            "approach" => "displacement along the surface",
+            other => other,
+        };
+        match self {
+            Error::OutOfRange { field, value, allowed } => Error::OutOfRange { field: of(field), value, allowed },
+            Error::LoadOutOfRange { time, field, value, allowed } => {
+                Error::LoadOutOfRange { time, field: of(field), value, allowed }
+            }
+            other => other,
+        }
+    }
+}
