@@ -85,6 +85,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         // first pressed, then sheared
         contact.step_sheared(0.0, load, Load::force(0.0))?;
         let (mut area, mut stick, mut force, mut half) = (Vec::new(), Vec::new(), Vec::new(), None);
+        let mut slides = f64::NAN;
         let mut run =
             contact.follow(&held, Stepping::adaptive(1.0e-3), until).sample_at(Times::every(until / 100.0))?;
         while run.next_step()?.is_some() {
@@ -100,12 +101,15 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
                 stick.push((at, shares[1]));
                 force.push((at, carried));
                 table.serialize((until, at, shares[0], shares[1], carried))?;
+                // where it begins to slide lies between the samples: what it has slid is not its own motion
+                if slides.is_nan() && contact.slid() > 0.0 {
+                    slides = at - contact.slid();
+                }
                 if half.is_none() && carried > 0.6 {
                     half = Some(contact.clone());
                 }
             }
         }
-        let slides = force.iter().find(|point| point.1 > 1.0 - 1e-9).map_or(f64::NAN, |point| point.0);
         println!(
             "in {until:.0e} s: {:.3} of the surface in contact at first, {:.3} at the end; it slides after {:.2} µm",
             area[0].1,
