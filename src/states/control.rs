@@ -218,10 +218,10 @@ impl Judge<StatesContact> for OnLevels {
             let held = if middle.level() > 0.0 { &middle.levels } else { &contact.levels };
             let released = held.shear.as_ref().map_or(0.0, |held| shear.lost - held.lost);
             let in_doubt = if halves.level() > 0.0 { 0.0 } else { released };
-            // of no certain order where edges move in the step: the halves err by no more than they differ from the
-            // whole
             // what begins to slip has lost next to nothing yet
             let done = done.max(far * most) * along * pressed;
+            // the loss is of no certain order where edges move in the step: the error of the halves is at most their
+            // difference from the whole
             see([(off[3] + in_doubt) / AIMS.of_halves, off[4]], [shear.lost.max(done), done / SMALL]);
             // levels that stick keep what a step has moved them by
             let time = end - record.corner;

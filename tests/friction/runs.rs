@@ -168,9 +168,10 @@ fn sheared_runs_err_by_what_was_asked() {
             stops.sort_by(f64::total_cmp);
             scene.run(factor * scene.tolerance, &stops, &times)
         };
-        let ((coarse, _), (exact, _)) = match (fine(200, 0.1), fine(400, 0.04)) {
-            (Ok(coarse), Ok(exact)) => (coarse, exact),
-            (Err(error), _) | (_, Err(error)) => {
+        let both = fine(200, 0.1).and_then(|(coarse, _)| Ok((coarse, fine(400, 0.04)?.0)));
+        let (coarse, exact) = match both {
+            Ok(both) => both,
+            Err(error) => {
                 vague += 1;
                 println!("vague {}: {error}", scene.name);
                 continue;

@@ -100,7 +100,8 @@ impl Levels {
     pub(in crate::states) fn shear_distance(&self, other: &Levels, before: &Levels, swept: f64) -> Option<[f64; 5]> {
         let (one, two, from) = (self.shear.as_ref()?, other.shear.as_ref()?, before.shear.as_ref()?);
         let (own, others) = (self.history.sheared()?, other.history.sheared()?);
-        // after a turn all sticks, and slips from the edge again
+        // up to where it stuck before; after a turn all sticks, and slips from the edge again. A zone that sticks and
+        // grows without a turn is not told apart from that: there all that slips counts as swept
         let stick = one.stick.min(two.stick);
         let edge = if stick < from.stick { from.stick } else { before.level };
         let (mut far, mut k, mut lower) = (0.0, 0, 0.0);
