@@ -74,7 +74,7 @@ pub struct FrictionContact {
 #[derive(Debug, Clone, Default)]
 pub(super) struct StepFields {
     places: Vec<[f64; 2]>,
-    bound: Vec<f64>,
+    pub(super) bound: Vec<f64>,
     entered: Vec<f64>,
     drift: Vec<f64>,
     free: Vec<f64>,

@@ -11,13 +11,18 @@ use crate::fields::Fields;
 use crate::friction::contact::{FrictionContact, size};
 use crate::friction::history::ShearHistory;
 use crate::friction::load::ShearLoad;
+use crate::friction::problem::Cell;
+use crate::friction::region::Rectangle;
 use crate::friction::report::Outcome;
+use crate::friction::state::State;
 use crate::load::{Load, LoadHistory};
 use crate::rheology::TemperatureHistory;
 use crate::run::control::Control;
 use crate::run::doubled::judge::SMALL;
+use crate::run::doubled::turned_back::turned_back;
 #[cfg(feature = "checkpoint")]
 use crate::run::doubled::{SavedRun, plain::Plain};
+use crate::run::passage::Span;
 use crate::run::progress::Progress;
 use crate::run::{Contact, Stepping, doubled};
 
@@ -117,12 +122,48 @@ impl Contact for FrictionContact {
         let motion = size(off(self.motion(), other.motion()), arm);
         let force = size(off(FrictionContact::force(self), FrictionContact::force(other)), arm.recip());
         let ([_, lost], [far, most]) = (self.state.work, self.state.largest);
-        let parts = [(motion, far), (force, most), ((lost - other.state.work[1]).abs(), lost.max(SMALL * far * most))];
+        // cells that slip carry all they can over what the solver leaves of motions
+        let carried = self.normal.grid().cell_area() * self.step.bound.iter().sum::<f64>();
+        let off_loss = (lost - other.state.work[1]).abs() - self.tolerance * far * carried;
+        let parts = [(motion, far), (force, most), (off_loss, lost.max(SMALL * far * most))];
         let part =
             parts.into_iter().map(|(off, largest)| if off > 0.0 { off / largest } else { 0.0 }).fold(0.0, f64::max);
         let part = (part - self.unresolved).max(0.0);
         let sizes = [[self.approach(), other.approach()], [Contact::force(self), Contact::force(other)]];
-        sizes.map(|[own, other]| (own - other).abs() + part * own.abs())
+        sizes.map(|[own, other]| ((own - other).abs() - self.tolerance * own.abs()).max(0.0) + part * own.abs())
+    }
+
+    fn slides(&self) -> bool {
+        self.stick_cells() == 0 && self.state.solution.cells.contains(&Cell::Slip)
+    }
+
+    /// Where bodies that slide stick again, at most as stiff as a circle about all cells.
+    fn unseen(&self, others: [&Self; 2]) -> [f64; 2] {
+        let State { region: Rectangle { cells, .. }, ref history, work: [_, lost], largest: [far, most], .. } =
+            self.state;
+        let ([before, middle], [q1, q2, q3]) = (others.map(|other| other.state.work[1]), FrictionContact::force(self));
+        let force = size([q1, q2, q3], self.contact_area().sqrt().recip());
+        let span = Span { now: others[0].normal().time(), end: self.normal().time() };
+        // what drives the body towards the force, as that of its work
+        let drive = |time: f64| {
+            let load =
+                |history: &dyn LoadHistory| if time > span.now { history.before(time) } else { history.at(time) };
+            let moved = |history: &Arc<dyn LoadHistory>| match load(&**history) {
+                Load::Approach { approach: motion, .. } => motion,
+                _ => 0.0,
+            };
+            self.lateral().iter().map(moved).zip([q1, q2, q3]).map(|(motion, force)| motion * force).sum::<f64>()
+                / force
+        };
+        let back = turned_back([(middle - before) / force, (lost - middle) / force], span, drive);
+        if !(back > 0.0 && back < f64::INFINITY) {
+            return [0.0; 2];
+        }
+        let [x1, x2] = [0, 1].map(|axis| cells[axis] as f64 * self.normal().grid().spacing()[axis]);
+        let is_moved = self.lateral().iter().any(|history| !history.before(self.time()).is_force());
+        let stiffness = if is_moved { x1.hypot(x2) / history.rule().compliance() } else { 0.0 };
+        let part = f64::max(back / far, (stiffness * back).min(2.0 * force) / most);
+        [self.approach(), Contact::force(self)].map(|own| part * own.abs())
     }
 
     fn columns(&self) -> Vec<(&'static str, f64)> {

@@ -164,9 +164,10 @@ impl Judge<StatesContact> for OnLevels {
         contact: &StatesContact,
         Tries { whole, halves, middle }: &mut Tries<StatesContact>,
         history: &dyn LoadHistory,
-        Span { now, end }: Span,
+        span: Span,
         report: &StepReport,
     ) -> Result<f64> {
+        let Span { now, end } = span;
         let (half, last) = (0.5 * (end - now), load_at(history, end)?);
         let cuts = [middle.level(), halves.level()];
         let mut of_surface = whole.levels.distance(
@@ -212,7 +213,9 @@ impl Judge<StatesContact> for OnLevels {
             // half of the aim: beside an error of its own it has that of the normal load
             let scales = [shear.displacement().abs().max(far * along), shear.force.abs().max(most * pressed)]
                 .map(|scale| 0.5 * scale);
-            see([off[0], off[2]], scales);
+            let asked = |time: f64| contact.along(time, time - now, None).ok().flatten();
+            let stuck = halves.levels.stuck_again(&halves.states, [&contact.levels, &middle.levels], span, asked);
+            see([off[0], off[2] + stuck / AIMS.of_halves], scales);
             // where bodies part, the halves agree although both pass over the slip: all that the last part loses is in
             // doubt
             let held = if middle.level() > 0.0 { &middle.levels } else { &contact.levels };
@@ -226,7 +229,7 @@ impl Judge<StatesContact> for OnLevels {
             // levels that stick keep what a step has moved them by
             let time = end - record.corner;
             let lasting = |demand| halves.levels.lasting(&halves.states, demand, time / half);
-            let lasting = contact.along(end, end - now, None)?.map_or(0.0, lasting);
+            let lasting = asked(end).map_or(0.0, lasting);
             let steps = AIMS.aim * lasting * (time / (end - now)).min(f64::from(PARTS_OF_RUN));
             see([steps * off[1], 0.0], scales);
             halves.levels.extrapolate_losses([contact, &*whole].map(|contact| &contact.levels), AIMS.of_halves);

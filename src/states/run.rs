@@ -65,6 +65,10 @@ impl Contact for StatesContact {
         StatesContact::is_separated(self)
     }
 
+    fn slides(&self) -> bool {
+        self.level() > 0.0 && self.stick_level() == 0.0
+    }
+
     fn report(&self, dt: f64, load: Load) -> StepReport {
         StatesContact::report(self, dt, load)
     }

@@ -11,3 +11,4 @@ mod space_known;
 mod space_runs;
 mod space_saved;
 mod steps;
+mod sticks_again;

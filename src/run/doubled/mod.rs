@@ -7,6 +7,7 @@
 pub(crate) mod judge;
 pub(crate) mod plain;
 mod rounded;
+pub(crate) mod turned_back;
 
 #[cfg(feature = "checkpoint")]
 use std::path::Path;
@@ -126,6 +127,7 @@ impl<C: Contact, J: Judge<C>> Doubled<C, J> {
             let growth = (aim / error).powf(1.0 / J::ORDER).clamp(MIN_GROWTH, most);
             if error <= ALLOWED * aim || is_late && length <= shortest {
                 self.record.next = match event {
+                    Some(_) if turn.is_some() && (contact.slides() || self.tries.halves.slides()) => 0.0,
                     Some(_) => growth.clamp(0.5, 1.0) * length,
                     None => growth.max(0.5) * (end - now).max(length.min(stop - now)),
                 };

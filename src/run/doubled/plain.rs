@@ -55,7 +55,9 @@ impl<C: Contact> Judge<C> for Plain {
         let over = |(off, (scale, greatest)): (f64, (f64, f64))| {
             if off == 0.0 { 0.0 } else { off / scale.max(SMALL * greatest) }
         };
-        let parts = whole.difference(halves).into_iter().zip(scales.into_iter().zip(record.greatest)).map(over);
+        let (off, unseen) = (whole.difference(halves), halves.unseen([contact, middle]));
+        let off = [0, 1].map(|k| off[k] + unseen[k]);
+        let parts = off.into_iter().zip(scales.into_iter().zip(record.greatest)).map(over);
         let worst = parts.fold(0.0, |worst, part| if part.is_nan() { f64::INFINITY } else { part.max(worst) });
         Ok(if changes { WITHOUT_ORDER } else { 1.0 } * worst)
     }

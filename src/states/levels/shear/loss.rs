@@ -2,6 +2,9 @@
 
 use super::{Outcome, Shear, inner_work, widths};
 use crate::hereditary::GroupHistory;
+use crate::run::doubled::turned_back::turned_back;
+use crate::run::passage::Span;
+use crate::states::curve::ElasticStates;
 use crate::states::levels::{Demand, Group, Levels};
 
 /// What levels lose that begin to slip while the edge moves, over what they would lose if it stood where it ends. A zone
@@ -122,6 +125,25 @@ impl Levels {
         let (own, others) = (numbers(one), numbers(two));
         let [motion, force, lost, work] = std::array::from_fn(|k| (own[k] - others[k]).abs());
         Some([far + (one.slid - two.slid).abs(), motion, force, lost, work])
+    }
+
+    /// By how much force a contact that slides in both halves of a step, `others` being the states before it and
+    /// between, may be off as it stuck in the second one; what drives it is a function of time.
+    pub(in crate::states) fn stuck_again(
+        &self,
+        states: &ElasticStates,
+        others: [&Levels; 2],
+        span: Span,
+        along: impl Fn(f64) -> Option<Demand>,
+    ) -> f64 {
+        let slid = |levels: &Levels| levels.shear.as_ref().map_or(0.0, |shear| shear.slid);
+        let ([before, middle], Some(Demand::Depth { give, .. })) = (others.map(slid), along(span.end)) else {
+            return 0.0;
+        };
+        let drive = |time: f64| if let Some(Demand::Depth { depth, .. }) = along(time) { depth } else { f64::NAN };
+        let back = turned_back([middle - before, slid(self) - middle], span, drive);
+        let compliance = give + self.history.rule().compliance() / states.stiffness(self.level);
+        if back > 0.0 { (back / compliance).min(2.0 * self.force) } else { 0.0 }
     }
 
     /// What slip and creep have dissipated.
