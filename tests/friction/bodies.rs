@@ -59,16 +59,24 @@ impl Body {
         0.02 * (high - low) * self.gap.len() as f64
     }
 
-    /// Tractions on cells that are `held`, and the motion of the body, at which c K t + `free` is the motion there and
-    /// their sum a `force`; other cells carry what they have.
-    pub fn held(&self, c: f64, free: &[f64], cells: &[usize], tractions: &mut [f64], force: f64) -> f64 {
+    /// Tractions on cells that are `held`, and the motion of the body, at which c K t + `free` is the share of the motion
+    /// there and their sum a `force`; other cells carry what they have.
+    pub fn held(
+        &self,
+        c: f64,
+        free: &[f64],
+        (cells, shares): (&[usize], &[f64]),
+        tractions: &mut [f64],
+        force: f64,
+    ) -> f64 {
         let others: Vec<f64> =
             (0..tractions.len()).map(|k| if cells.contains(&k) { 0.0 } else { tractions[k] }).collect();
-        let (of_others, m) = (self.displacement(&others), cells.len());
+        let of_others = self.displacement(&others);
         let matrix: Vec<f64> =
             cells.iter().flat_map(|&a| cells.iter().map(move |&b| c * self.influence[a][b])).collect();
         let right: Vec<f64> = cells.iter().map(|&k| -free[k] - c * of_others[k]).collect();
-        let [fixed, moved] = [right, vec![1.0; m]].map(|right| solve_definite(&matrix, &right).unwrap());
+        let moves: Vec<f64> = cells.iter().map(|&k| shares[k]).collect();
+        let [fixed, moved] = [right, moves].map(|right| solve_definite(&matrix, &right).unwrap());
         let motion = (force - others.iter().sum::<f64>() - fixed.iter().sum::<f64>()) / moved.iter().sum::<f64>();
         cells
             .iter()
@@ -88,7 +96,7 @@ impl Body {
         for round in 0..400 {
             let cells: Vec<usize> = (0..n).filter(|&k| active[k]).collect();
             let mut pressure = vec![0.0; n];
-            let approach = self.held(c, &above, &cells, &mut pressure, force);
+            let approach = self.held(c, &above, (&cells, &vec![1.0; n]), &mut pressure, force);
             let most = pressure.iter().fold(0.0f64, |most, p| most.max(p.abs()));
             let displaced = self.displacement(&pressure);
             let pulls: Vec<usize> = cells.iter().copied().filter(|&k| pressure[k] < -1e-13 * most).collect();
@@ -109,17 +117,17 @@ impl Body {
     }
 
     /// Tractions of Coulomb's law with a bound on each cell, and the motion of the body, where c K t + `free` is the
-    /// motion of the surface.
-    pub fn rub(&self, c: f64, free: &[f64], bound: &[f64], force: f64) -> (Vec<f64>, f64) {
+    /// motion of the surface, and each cell meets it for a share of the step.
+    pub fn rub(&self, c: f64, free: &[f64], bound: &[f64], shares: &[f64], force: f64) -> (Vec<f64>, f64) {
         let n = bound.len();
         let mut slips = vec![0.0; n];
         for round in 0..500 {
             let mut traction: Vec<f64> = (0..n).map(|k| slips[k] * bound[k]).collect();
             let cells: Vec<usize> = (0..n).filter(|&k| bound[k] > 0.0 && slips[k] == 0.0).collect();
-            let motion = self.held(c, free, &cells, &mut traction, force);
+            let motion = self.held(c, free, (&cells, shares), &mut traction, force);
             let displaced = self.displacement(&traction);
             let most = bound.iter().copied().fold(0.0, f64::max);
-            let slip = |k: usize| motion - free[k] - c * displaced[k];
+            let slip = |k: usize| shares[k] * motion - free[k] - c * displaced[k];
             let far = (0..n).filter(|&k| bound[k] > 0.0).map(|k| slip(k).abs()).fold(1e-30, f64::max);
             let over: Vec<usize> =
                 cells.iter().copied().filter(|&k| traction[k].abs() > bound[k] + 1e-12 * most).collect();

@@ -69,7 +69,7 @@ fn gradients_are_those_of_dense_steps() {
             let right: Vec<f64> = lifted.iter().zip(&direction).map(|(lifted, gap)| lifted + gap).collect();
             let held: Vec<usize> = (0..cells).filter(|&k| pressure[k] > 0.0).collect();
             let mut changes = vec![0.0; cells];
-            let change = body.held(c, &right, &held, &mut changes, 0.0);
+            let change = body.held(c, &right, (&held, &vec![1.0; cells]), &mut changes, 0.0);
             let displaced = body.displacement(&changes);
             relaxation.commit(dt, &mut tangent, (0..cells).map(|k| c * displaced[k] + lifted[k]).collect());
 
