@@ -39,10 +39,10 @@ impl FrictionContact {
     /// jumps of all histories; where pressure and shear jump at once, by oblique loading. Without it no force acts
     /// along the surface of a body that does not turn.
     ///
-    /// Adaptive steps keep the error of motions and forces along the surface, relative to their maximum so far, and of
-    /// the loss by slip within the tolerance besides that of approach and force, and solve to 1e-4 of it. The loss
-    /// counts as at least a tenth of the largest motion times the largest force. More than friction carries ends the
-    /// run with [`Error::Slides`]; [`FrictionContact::load_share`] tells before.
+    /// Adaptive steps keep the error of motions and forces along the surface, relative to their maximum so far, of the
+    /// work and of the loss by slip within the tolerance besides that of approach and force, and solve to 1e-4 of it.
+    /// Work and loss count as at least a tenth of the largest motion times the largest force. More than friction carries
+    /// ends the run with [`Error::Slides`]; [`FrictionContact::load_share`] tells before.
     ///
     /// ```
     /// use viscocontact::friction::{Coulomb, FrictionContact, ShearHistory};
@@ -114,18 +114,20 @@ impl Contact for FrictionContact {
         Some(self.normal().fields())
     }
 
-    /// Of approach and force, and as large a part of them as motion, force and loss along the surface are off by, over
+    /// Of approach and force, and as large a part of them as motion, force, work and loss along the surface are off by, over
     /// their maximum so far (angles times the square root of the contact area, torques over it).
     fn difference(&self, other: &Self) -> [f64; 2] {
         let off = |one: [f64; 3], other: [f64; 3]| [0, 1, 2].map(|k| one[k] - other[k]);
         let arm = self.contact_area().sqrt();
         let motion = size(off(self.motion(), other.motion()), arm);
         let force = size(off(FrictionContact::force(self), FrictionContact::force(other)), arm.recip());
-        let ([_, lost], [far, most]) = (self.state.work, self.state.largest);
+        let ([work, lost], [far, most]) = (self.state.work, self.state.largest);
+        let [off_work, off_loss] = [0, 1].map(|k| (self.state.work[k] - other.state.work[k]).abs());
         // cells that slip carry all they can over what the solver leaves of motions
         let carried = self.normal.grid().cell_area() * self.step.bound.iter().sum::<f64>();
-        let off_loss = (lost - other.state.work[1]).abs() - self.tolerance * far * carried;
-        let parts = [(motion, far), (force, most), (off_loss, lost.max(SMALL * far * most))];
+        let off_loss = off_loss - self.tolerance * far * carried;
+        let least = SMALL * far * most;
+        let parts = [(motion, far), (force, most), (off_loss, lost.max(least)), (off_work, work.abs().max(least))];
         let part =
             parts.into_iter().map(|(off, largest)| if off > 0.0 { off / largest } else { 0.0 }).fold(0.0, f64::max);
         let part = (part - self.unresolved).max(0.0);

@@ -3,21 +3,22 @@
 
 use std::sync::Arc;
 
-use crate::common::random_bodies::{Body, random_body};
+use crate::common::random_bodies::random_body;
 use crate::common::random_histories::{Control, random_history};
 use crate::common::{Draws, Ratios, from_environment};
 use viscocontact::prelude::*;
+use viscocontact::run::Contact;
 use viscocontact::states::{ElasticStates, StatesContact};
 
 /// What acts along the surface: a part of what friction carries, or a motion of it.
 #[derive(Debug, Clone)]
-struct Along {
-    part: Arc<dyn LoadHistory>,
-    kind: Kind,
+pub struct Along {
+    pub part: Arc<dyn LoadHistory>,
+    pub kind: Kind,
 }
 
 #[derive(Debug, Clone)]
-enum Kind {
+pub enum Kind {
     /// Of f P.
     Force(Arc<dyn LoadHistory>, f64),
     /// Of a displacement.
@@ -61,18 +62,22 @@ impl LoadHistory for Along {
     }
 }
 
-struct Scene {
-    name: String,
-    body: Body,
-    contact: StatesContact,
-    normal: Arc<dyn LoadHistory>,
-    corners: Vec<f64>,
-    tolerance: f64,
+/// A contact that is pressed, and moved or pushed along its surface.
+pub struct Scene<C> {
+    pub name: String,
+    pub until: f64,
+    pub contact: C,
+    pub normal: Arc<dyn LoadHistory>,
+    pub corners: Vec<f64>,
+    pub tolerance: f64,
 }
 
-impl Scene {
+/// Displacement, force, loss by slip and work.
+type Seen = [f64; 4];
+
+impl Scene<StatesContact> {
     /// `None` where Poisson's ratio changes, and of fluids, on which rates act.
-    fn new(seed: u64) -> Option<Scene> {
+    fn new(seed: u64) -> Option<Scene<StatesContact>> {
         let draws = &mut Draws::new(seed);
         let tolerance = [1e-2, 1e-3][draws.below(2)];
         let body = random_body(draws);
@@ -111,25 +116,31 @@ impl Scene {
         corners.retain(|corner| *corner > 0.0 && *corner < body.until);
         let contact = StatesContact::new(&states, &body.material).unwrap();
         let contact = contact.with_estimated_friction(friction).unwrap().sheared_by(along).unwrap();
-        Some(Scene { name, body, contact, normal: history, corners, tolerance })
+        Some(Scene { name, until: body.until, contact, normal: history, corners, tolerance })
     }
+}
 
-    /// Displacement, force, loss and work along the surface at times of a run of this tolerance whose steps end at more times.
-    fn run(&self, tolerance: f64, stops: &[f64], times: &[f64]) -> std::result::Result<(Vec<[f64; 4]>, usize), String> {
+impl<C: Contact> Scene<C> {
+    /// What is seen along the surface at times of a run of this tolerance whose steps end at more times.
+    fn run(
+        &self,
+        tolerance: f64,
+        [stops, times]: [&[f64]; 2],
+        seen: fn(&C) -> Seen,
+    ) -> std::result::Result<(Vec<Seen>, usize), String> {
         let (mut contact, mut found, mut steps) = (self.contact.clone(), Vec::new(), 0);
-        let mut run = contact.follow(&*self.normal, Stepping::adaptive(tolerance), self.body.until);
+        let mut run = contact.follow(&*self.normal, Stepping::adaptive(tolerance), self.until);
         run = run.stop_at(stops.to_vec()).unwrap().sample_at(times.to_vec()).unwrap();
         while run.next_step().map_err(|error| error.to_string())?.is_some() {
             steps += 1;
             if steps > 40_000 {
-                return Err(format!("{} of {}", run.contact().time(), self.body.until));
+                return Err(format!("{} of {}", run.contact().time(), self.until));
             }
             for sample in run.samples() {
                 let sample = sample.map_err(|error| error.to_string())?;
                 // at a jump the state before it
                 if sample.is_asked_for() && found.len() < times.len() {
-                    let (contact, work) = (sample.contact(), sample.contact().lateral_work());
-                    found.push([contact.lateral_displacement(), contact.lateral_force(), work.slip, work.work]);
+                    found.push(seen(sample.contact()));
                 }
             }
         }
@@ -137,7 +148,7 @@ impl Scene {
     }
 }
 
-fn kind_of(kind: &Kind) -> &'static str {
+pub fn kind_of(kind: &Kind) -> &'static str {
     match kind {
         Kind::Force(..) => "by force",
         Kind::Motion(_) => "by displacement",
@@ -147,15 +158,26 @@ fn kind_of(kind: &Kind) -> &'static str {
 
 #[test]
 fn sheared_runs_err_by_what_was_asked() {
-    let (count, first) = (from_environment("FRICTION_RUNS", 8), from_environment("FRICTION_SEED", 0));
+    let seen = |contact: &StatesContact| {
+        let work = contact.lateral_work();
+        [contact.lateral_displacement(), contact.lateral_force(), work.slip, work.work]
+    };
+    err_by_what_was_asked(8, Scene::new, seen);
+}
+
+/// `FRICTION_RUNS` scenes against runs of a tenth and a twenty-fifth of their tolerance with 200 and 400 stops.
+pub fn err_by_what_was_asked<C: Contact>(count: u64, draw: fn(u64) -> Option<Scene<C>>, seen: fn(&C) -> Seen) {
+    let (count, first) = (from_environment("FRICTION_RUNS", count), from_environment("FRICTION_SEED", 0));
     let (mut ratios, mut taken): ([Ratios; 4], Ratios) = Default::default();
     let (mut failed, mut vague, mut seed) = (Vec::new(), 0, first);
     while ratios[0].count() + failed.len() + vague < count as usize {
         seed += 1;
-        let Some(scene) = Scene::new(seed) else { continue };
-        let until = scene.body.until;
-        let times: Vec<f64> = (1..=100).map(|k| until * (f64::from(k) - 0.37) / 100.0).collect();
-        let (found, steps) = match scene.run(scene.tolerance, &[], &times) {
+        let Some(scene) = draw(seed) else { continue };
+        let until = scene.until;
+        // errors are relative to the maximum of the run, which may be that of the first instant
+        let early = (3..=12).rev().map(|k| until * f64::powi(0.1, k));
+        let times: Vec<f64> = early.chain((1..=100).map(|k| until * (f64::from(k) - 0.37) / 100.0)).collect();
+        let (found, steps) = match scene.run(scene.tolerance, [&[], &times], seen) {
             Ok(found) => found,
             Err(error) => {
                 failed.push(format!("{}: {error}", scene.name));
@@ -166,7 +188,7 @@ fn sheared_runs_err_by_what_was_asked() {
             let equal = (1..parts).map(|k| until * f64::from(k) / f64::from(parts));
             let mut stops: Vec<f64> = equal.chain(scene.corners.iter().copied()).collect();
             stops.sort_by(f64::total_cmp);
-            scene.run(factor * scene.tolerance, &stops, &times)
+            scene.run(factor * scene.tolerance, [&stops, &times], seen)
         };
         let both = fine(200, 0.1).and_then(|(coarse, _)| Ok((coarse, fine(400, 0.04)?.0)));
         let (coarse, exact) = match both {

@@ -1,13 +1,19 @@
 //! Runs of contacts with friction in space: true over asked, slip that begins, what a run does with too much load.
 
+use std::f64::consts::PI;
+use std::sync::Arc;
+
 use viscocontact::friction::{Coulomb, FrictionContact, Outcome, ShearHistory, ShearLoad};
 use viscocontact::prelude::*;
 use viscocontact::states::{ElasticStates, StatesContact};
 
 use super::dense::relaxation;
+use super::runs::{Along, Kind, Scene, err_by_what_was_asked, kind_of};
 use super::space::pair;
 use crate::common::draws::Draws;
 use crate::common::environment::from_environment;
+use crate::common::random_bodies::random_body;
+use crate::common::random_histories::{Control, random_history};
 
 const UNTIL: f64 = 4.0;
 
@@ -95,6 +101,62 @@ fn errors_are_what_was_asked_for() {
     }
     println!("{scenes} runs, {over} over 2: motion, force, loss, work, true over asked {worst:.2?}");
     assert!(over == 0 && worst.iter().all(|ratio| *ratio > 1e-3), "{worst:?}");
+}
+
+/// A random body and any two histories, on cells.
+fn random(seed: u64) -> Option<Scene<FrictionContact>> {
+    let draws = &mut Draws::new(seed);
+    let tolerance = [1e-2, 3e-3][draws.below(2)];
+    let body = random_body(draws);
+    if !body.is_elastic_at_once() {
+        return None;
+    }
+    let (depth, friction, until): (f64, f64, f64) = (0.05, draws.between(0.1, 0.9), body.until);
+    let (shape, curved): (Box<dyn Geometry>, f64) = match draws.below(3) {
+        0 => (Box::new(Sphere::new(1.0).unwrap()), 4.0 / 3.0 * depth.powf(1.5)),
+        1 => (Box::new(Cone::new(0.2).unwrap()), 2.0 / PI * depth * depth / 0.2),
+        _ => (Box::new(Cylinder::new(1.0).unwrap()), 0.25 * PI * depth),
+    };
+    let force = curved / body.material.contact_compliance(until);
+    let control = match draws.below(3) {
+        0 => Control::Force(force),
+        1 => Control::Approach { touch: 0.0, depth },
+        _ => Control::by_spring(draws, 0.0, depth, force),
+    };
+    let normal = random_history(draws, control, until, true);
+    let history: Arc<dyn LoadHistory> = Arc::from(normal.history);
+    let mut corners = normal.corners;
+    let mut name = format!("{seed}: {}, {}, {tolerance:.0e};", body.name, normal.name);
+    let mut along = |far: f64, may_push: bool| {
+        let part = random_history(draws, Control::Approach { touch: -0.4, depth: 1.3 }, until, true);
+        corners.extend(part.corners);
+        let kind = if may_push && draws.chance(0.5) {
+            Kind::Force(Arc::clone(&history), 0.67 * friction)
+        } else {
+            Kind::Motion(far * draws.scale(0.1, 3.0))
+        };
+        name += &format!(" {} {}", part.name, kind_of(&kind));
+        Along { part: Arc::from(part.history), kind }
+    };
+    let pushes = matches!(control, Control::Force(_));
+    let [first, second] = [0, 1].map(|_| along(friction * depth, pushes));
+    let shear = ShearHistory::new(first, second);
+    let builder = ViscoelasticContact::builder(Grid::square(12, 1.0).unwrap())
+        .geometry(&*shape)
+        .material(body.material)
+        .settings(Settings::default().with_edge(Edge::Allow));
+    let contact = FrictionContact::new(builder, Coulomb::new(friction).unwrap()).ok()?.sheared_by(shear);
+    corners.retain(|corner| *corner > 0.0 && *corner < until);
+    Some(Scene { name, until, contact, normal: history, corners, tolerance })
+}
+
+#[test]
+fn any_loads_err_by_what_was_asked() {
+    let seen = |contact: &FrictionContact| {
+        let ([m1, m2, _], [q1, q2, _], work) = (contact.motion(), contact.force(), contact.lateral_work());
+        [m1 + 0.5 * m2, q1 + 0.5 * q2, work.slip, work.work]
+    };
+    err_by_what_was_asked(4, random, seen);
 }
 
 #[test]

@@ -64,6 +64,11 @@ pub(crate) trait Judge<C: Contact>: Default + Clone + Debug + Send + Sync + 'sta
         MAX_GROWTH
     }
 
+    /// Whether what a step did begins the time anew that its aims count from, as a corner does.
+    fn begins_anew(_before: &C, _after: &C) -> bool {
+        false
+    }
+
     /// The error that a step aims at.
     fn aim(record: &Record<Self>, contact: &C, span: Span) -> f64;
 

@@ -134,6 +134,9 @@ impl<C: Contact, J: Judge<C>> Doubled<C, J> {
                 self.record.greatest = J::greatest(&self.record, &self.tries.halves);
                 self.record.touches = event.is_some() && contact.is_separated();
                 self.record.worst = Some(self.record.worst.map_or(error, |worst| worst.max(error)));
+                if J::begins_anew(contact, &self.tries.halves) {
+                    self.record.corner = now;
+                }
                 J::copy(contact, &self.tries.halves);
                 J::accept(&self.record, contact);
                 return Ok(StepReport { dt: end - now, time_error: Some(error), ..report });

@@ -9,7 +9,7 @@ use crate::load::{Load, LoadHistory};
 use crate::run::Contact;
 #[cfg(feature = "checkpoint")]
 use crate::run::doubled::SavedRun;
-use crate::run::doubled::judge::{Judge, Record, SMALL, Tries, WITHOUT_ORDER};
+use crate::run::doubled::judge::{FIRST_STEP, Judge, Record, SMALL, Tries, WITHOUT_ORDER};
 use crate::run::passage::{Passage, Span};
 
 /// Part of the tolerance that the steps of a run share by their length, and each step beside that by its length over
@@ -30,8 +30,13 @@ impl<C: Contact> Judge<C> for Plain {
         Ok(load.main())
     }
 
-    fn aim(record: &Record<Plain>, _: &C, Span { now, end }: Span) -> f64 {
-        let (run, since) = (record.until - record.start, end - record.corner);
+    fn begins_anew(before: &C, after: &C) -> bool {
+        before.is_separated() && !after.is_separated()
+    }
+
+    fn aim(record: &Record<Plain>, contact: &C, Span { now, end }: Span) -> f64 {
+        let corner = if contact.is_separated() { now } else { record.corner };
+        let (run, since) = (record.until - record.start, end - corner);
         record.tolerance * (end - now) * (OF_RUN / run + OF_DECADE / since)
     }
 
@@ -45,10 +50,15 @@ impl<C: Contact> Judge<C> for Plain {
         contact: &C,
         tries: &mut Tries<C>,
         _: &dyn LoadHistory,
-        _: Span,
+        Span { now, end }: Span,
         _: &StepReport,
     ) -> Result<f64> {
         let Tries { whole, halves, middle } = tries;
+        // what begins from nothing is off by a part of itself, however short the step is
+        let is_short = record.next == 0.0 || end - now <= FIRST_STEP * (end - record.corner);
+        if is_short && Self::begins_anew(contact, halves) {
+            return Ok(0.0);
+        }
         let apart = contact.is_separated();
         let changes = middle.is_separated() != apart || halves.is_separated() != apart;
         let scales = [halves.approach(), halves.force()].map(f64::abs);
