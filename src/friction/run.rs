@@ -12,7 +12,6 @@ use crate::friction::contact::{FrictionContact, size};
 use crate::friction::history::ShearHistory;
 use crate::friction::load::ShearLoad;
 use crate::friction::problem::Cell;
-use crate::friction::region::Rectangle;
 use crate::friction::report::Outcome;
 use crate::friction::state::State;
 use crate::load::{Load, LoadHistory};
@@ -123,7 +122,7 @@ impl Contact for FrictionContact {
         let force = size(off(FrictionContact::force(self), FrictionContact::force(other)), arm.recip());
         let ([work, lost], [far, most]) = (self.state.work, self.state.largest);
         let [off_work, off_loss] = [0, 1].map(|k| (self.state.work[k] - other.state.work[k]).abs());
-        // cells that slip carry all they can over what the solver leaves of motions
+        // what friction can carry, over what the solver leaves of motions
         let carried = self.normal.grid().cell_area() * self.step.bound.iter().sum::<f64>();
         let off_loss = off_loss - self.tolerance * far * carried;
         let least = SMALL * far * most;
@@ -132,20 +131,31 @@ impl Contact for FrictionContact {
             parts.into_iter().map(|(off, largest)| if off > 0.0 { off / largest } else { 0.0 }).fold(0.0, f64::max);
         let part = (part - self.unresolved).max(0.0);
         let sizes = [[self.approach(), other.approach()], [Contact::force(self), Contact::force(other)]];
-        sizes.map(|[own, other]| ((own - other).abs() - self.tolerance * own.abs()).max(0.0) + part * own.abs())
+        sizes.map(|[own, other]| {
+            let (off, left) = ((own - other).abs(), self.tolerance * own.abs());
+            (if off <= left { 0.0 } else { off - left }) + part * own.abs()
+        })
     }
 
     fn slides(&self) -> bool {
         self.stick_cells() == 0 && self.state.solution.cells.contains(&Cell::Slip)
     }
 
-    /// Where bodies that slide stick again, at most as stiff as a circle about all cells.
-    fn unseen(&self, others: [&Self; 2]) -> [f64; 2] {
-        let State { region: Rectangle { cells, .. }, ref history, work: [_, lost], largest: [far, most], .. } =
-            self.state;
-        let ([before, middle], [q1, q2, q3]) = (others.map(|other| other.state.work[1]), FrictionContact::force(self));
-        let force = size([q1, q2, q3], self.contact_area().sqrt().recip());
-        let span = Span { now: others[0].normal().time(), end: self.normal().time() };
+    /// Where a body that is moved and slides sticks again. It is about as stiff as a circle about all cells at most; one
+    /// that is periodic yields between its contacts alone.
+    fn unseen(&self, [before, middle]: [&Self; 2]) -> [f64; 2] {
+        if !middle.slides() || self.lateral().iter().all(|history| history.before(self.time()).is_force()) {
+            return [0.0; 2];
+        }
+        let ([q1, q2, q3], arm) = (FrictionContact::force(self), self.contact_area().sqrt());
+        let force = |contact: &Self| size(FrictionContact::force(contact), arm.recip());
+        let (first, middle_force, last) = (force(before), force(middle), force(self));
+        // while it slid
+        let first = if before.slides() { first } else { middle_force };
+        let [lost, half_lost, all_lost] = [before, middle, self].map(|contact| contact.state.work[1]);
+        let means = [first + middle_force, middle_force + last].map(|sum| 0.5 * sum);
+        let slid = [(half_lost - lost) / means[0], (all_lost - half_lost) / means[1]];
+        let span = Span { now: before.time(), end: self.time() };
         // what drives the body towards the force, as that of its work
         let drive = |time: f64| {
             let load =
@@ -154,17 +164,22 @@ impl Contact for FrictionContact {
                 Load::Approach { approach: motion, .. } => motion,
                 _ => 0.0,
             };
-            self.lateral().iter().map(moved).zip([q1, q2, q3]).map(|(motion, force)| motion * force).sum::<f64>()
-                / force
+            self.lateral().iter().map(moved).zip([q1, q2, q3]).map(|(motion, force)| motion * force).sum::<f64>() / last
         };
-        let back = turned_back([(middle - before) / force, (lost - middle) / force], span, drive);
+        let back = turned_back(slid, span, drive);
         if !(back > 0.0 && back < f64::INFINITY) {
             return [0.0; 2];
         }
-        let [x1, x2] = [0, 1].map(|axis| cells[axis] as f64 * self.normal().grid().spacing()[axis]);
-        let is_moved = self.lateral().iter().any(|history| !history.before(self.time()).is_force());
-        let stiffness = if is_moved { x1.hypot(x2) / history.rule().compliance() } else { 0.0 };
-        let part = f64::max(back / far, (stiffness * back).min(2.0 * force) / most);
+        let (State { region, history, largest: [far, most], .. }, grid) = (&self.state, self.normal().grid());
+        let [x1, x2] = [0, 1].map(|axis| region.cells[axis] as f64 * grid.spacing()[axis]);
+        let yields = if self.response.periodic().contains(&true) {
+            1.0 - self.contact_area() / (grid.lengths()[0] * grid.lengths()[1])
+        } else {
+            1.0
+        };
+        let stiffness = x1.hypot(x2) / (history.rule().compliance() * yields.max(SMALL));
+        let part = f64::max(back / far, (stiffness * back).min(2.0 * last) / most);
+        let part = (part - self.unresolved).max(0.0);
         [self.approach(), Contact::force(self)].map(|own| part * own.abs())
     }
 

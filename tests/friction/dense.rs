@@ -155,6 +155,7 @@ fn compare(seed: u64, grows: bool, worst: &mut Worst) {
         before = f64::max(before, d.abs());
         worst.displacement = worst.displacement.max((contact.lateral_displacement() - d).abs() / before);
         let work = contact.lateral_work();
+        // what slips in the step in which it is met is of another order in both
         let of_slip = if grows { 0.0 } else { (work.slip - lost).abs() };
         let off = f64::max(of_slip, (work.creep - crept).abs());
         worst.loss = worst.loss.max(off / (work.work.abs() + lost));

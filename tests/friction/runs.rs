@@ -204,7 +204,7 @@ pub fn err_by_what_was_asked<C: Contact>(count: u64, draw: fn(u64) -> Option<Sce
         // what hardly slips loses nothing
         greatest[2] = greatest[2].max(0.1 * greatest[3]);
         let apart = |a: &[[f64; 4]], k: usize| {
-            let off = a.iter().zip(&exact).map(|(a, b)| (a[k] - b[k]).abs()).fold(0.0, f64::max);
+            let off = a.iter().zip(&exact).map(|(a, b)| (a[k] - b[k]).abs()).max_by(f64::total_cmp).unwrap();
             if greatest[k] > 0.0 { off / greatest[k] / scene.tolerance } else { 0.0 }
         };
         if (0..4).any(|k| apart(&coarse, k) > 0.5) {

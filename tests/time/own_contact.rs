@@ -146,6 +146,46 @@ impl Scene {
     }
 }
 
+/// A body that touches in the first step, towards a load that rises in a small part of the run, and one that recovers apart.
+#[test]
+fn what_touches_and_what_is_apart_are_judged() {
+    for (implicit, tolerance) in [(1.0, 1e-3), (0.5, 1e-4)] {
+        let own = Own::new([1.0, 3.0], 0.7, implicit);
+        let [gain, rate] = own.coefficients(true);
+        let off = |history: Box<dyn LoadHistory>,
+                   until: f64,
+                   times: &[f64],
+                   strain: &dyn Fn(f64) -> f64,
+                   force: &dyn Fn(f64) -> f64| {
+            let run = own.clone().into_follow(history, Stepping::adaptive(tolerance), until);
+            let mut run = run.sample_at(times.to_vec()).unwrap();
+            let mut worst = vec![];
+            while run.next_step().unwrap().is_some() {
+                for sample in run.samples().map(Result::unwrap).filter(|sample| sample.is_asked_for()) {
+                    let t = sample.contact().time;
+                    let exact = (force(t) + 3.0 * strain(t)) / 4.0;
+                    worst.push((sample.contact().approach - exact).abs() / tolerance);
+                }
+            }
+            assert_eq!(worst.len(), times.len());
+            worst.into_iter().max_by(f64::total_cmp).unwrap()
+        };
+        let slow = Box::new(FnHistory::new(|t: f64| Load::force(1.0 - (-t).exp())));
+        let rises =
+            |t: f64| gain * ((1.0 - (-rate * t).exp()) / rate - ((-t).exp() - (-rate * t).exp()) / (rate - 1.0));
+        let times: Vec<f64> = (1..=60).map(|k| 0.05 * 1.22_f64.powi(k)).collect();
+        let touched = off(slow, 2e4, &times, &rises, &|t| 1.0 - (-t).exp());
+        let corners = [(0.0, 1.0), (1.0, 1.0), (1.0, 0.0), (4.0, 0.0)].map(|(time, force)| (time, Load::force(force)));
+        let released = Box::new(PiecewiseLinear::new(&corners).unwrap());
+        let held = |t: f64| gain / rate * (1.0 - (-rate * t).exp());
+        let left = |t: f64| if t < 1.0 { held(t) } else { held(1.0) * (-rate * (t - 1.0)).exp() };
+        let times: Vec<f64> = (1..=40).map(|k| 1.0 + 0.05 * f64::from(k)).collect();
+        let apart = off(released, 3.0, &times, &left, &|_| 0.0);
+        println!("order {implicit}: touched {touched:.2}, apart {apart:.2}");
+        assert!(touched < 2.0 && apart < 2.0);
+    }
+}
+
 #[test]
 fn errors_are_what_was_asked_for() {
     let (mut ratios, mut steps) = (Ratios::default(), Ratios::default());

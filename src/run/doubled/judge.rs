@@ -69,8 +69,8 @@ pub(crate) trait Judge<C: Contact>: Default + Clone + Debug + Send + Sync + 'sta
         false
     }
 
-    /// The error that a step aims at.
-    fn aim(record: &Record<Self>, contact: &C, span: Span) -> f64;
+    /// The error that a step of `contact` aims at, which leads to `after`.
+    fn aim(record: &Record<Self>, contact: &C, after: &C, span: Span) -> f64;
 
     /// The first time within a step at which it has to end: where bodies touch or part, or a force begins or ends.
     fn event(

@@ -123,11 +123,17 @@ impl<C: Contact, J: Judge<C>> Doubled<C, J> {
                 report => report?,
             };
             let error = J::error(&self.record, contact, &mut self.tries, history, span, &report)?;
-            let (aim, most) = (J::aim(&self.record, contact, span), if error > 0.0 { longest } else { MAX_GROWTH });
+            let (aim, most) = (
+                J::aim(&self.record, contact, &self.tries.halves, span),
+                if error > 0.0 { longest } else { MAX_GROWTH },
+            );
             let growth = (aim / error).powf(1.0 / J::ORDER).clamp(MIN_GROWTH, most);
             if error <= ALLOWED * aim || is_late && length <= shortest {
                 self.record.next = match event {
-                    Some(_) if turn.is_some() && (contact.slides() || self.tries.halves.slides()) => 0.0,
+                    // what slid sticks and slips anew
+                    Some(_) if turn.is_some() && (contact.slides() || self.tries.halves.slides()) => {
+                        (FIRST_STEP * (self.record.until - end)).min(growth.max(0.5) * (end - now))
+                    }
                     Some(_) => growth.clamp(0.5, 1.0) * length,
                     None => growth.max(0.5) * (end - now).max(length.min(stop - now)),
                 };

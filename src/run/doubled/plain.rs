@@ -34,8 +34,8 @@ impl<C: Contact> Judge<C> for Plain {
         before.is_separated() && !after.is_separated()
     }
 
-    fn aim(record: &Record<Plain>, contact: &C, Span { now, end }: Span) -> f64 {
-        let corner = if contact.is_separated() { now } else { record.corner };
+    fn aim(record: &Record<Plain>, contact: &C, after: &C, Span { now, end }: Span) -> f64 {
+        let corner = if Self::begins_anew(contact, after) { now } else { record.corner };
         let (run, since) = (record.until - record.start, end - corner);
         record.tolerance * (end - now) * (OF_RUN / run + OF_DECADE / since)
     }
@@ -54,11 +54,6 @@ impl<C: Contact> Judge<C> for Plain {
         _: &StepReport,
     ) -> Result<f64> {
         let Tries { whole, halves, middle } = tries;
-        // what begins from nothing is off by a part of itself, however short the step is
-        let is_short = record.next == 0.0 || end - now <= FIRST_STEP * (end - record.corner);
-        if is_short && Self::begins_anew(contact, halves) {
-            return Ok(0.0);
-        }
         let apart = contact.is_separated();
         let changes = middle.is_separated() != apart || halves.is_separated() != apart;
         let scales = [halves.approach(), halves.force()].map(f64::abs);
@@ -66,9 +61,15 @@ impl<C: Contact> Judge<C> for Plain {
             if off == 0.0 { 0.0 } else { off / scale.max(SMALL * greatest) }
         };
         let (off, unseen) = (whole.difference(halves), halves.unseen([contact, middle]));
-        let off = [0, 1].map(|k| off[k] + unseen[k]);
+        let off = [0, 1].map(|k| off[k] + unseen[k].max(0.0));
         let parts = off.into_iter().zip(scales.into_iter().zip(record.greatest)).map(over);
         let worst = parts.fold(0.0, |worst, part| if part.is_nan() { f64::INFINITY } else { part.max(worst) });
+        // what begins from nothing is off by a part of itself, however short the step is: one that all longer ones were
+        // rejected for is accepted
+        let since = (end - record.corner).max(FIRST_STEP * (record.until - now));
+        if worst.is_finite() && end - now <= FIRST_STEP * since && Self::begins_anew(contact, halves) {
+            return Ok(0.0);
+        }
         Ok(if changes { WITHOUT_ORDER } else { 1.0 } * worst)
     }
 

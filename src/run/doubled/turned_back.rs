@@ -9,7 +9,7 @@ const LOOKS: u32 = 16;
 /// by a `drive` of the time, which it follows but for what it creeps, a quadratic of time. It cannot: it sticks.
 pub(crate) fn turned_back(slid: [f64; 2], Span { now, end }: Span, drive: impl Fn(f64) -> f64) -> f64 {
     let [first, last] = slid;
-    // what slides back in the second half differs in the whole
+    // what slides in the second half alone, or back, differs in the whole
     if first == 0.0 || first * last < 0.0 {
         return 0.0;
     }
