@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 use crate::fields::Fields;
 use crate::friction::contact::{FrictionContact, size};
 use crate::friction::history::ShearHistory;
-use crate::friction::load::ShearLoad;
+use crate::friction::load::{Component, ShearLoad};
 use crate::friction::problem::Cell;
 use crate::friction::report::Outcome;
 use crate::friction::state::State;
@@ -67,16 +67,31 @@ impl FrictionContact {
         self.history_along = Some(history);
         self
     }
+
+    /// What acts along the surface at the end of a step of length `dt` to a `time`: at a jump of no time, else before it.
+    fn sheared_at(&self, time: f64, dt: f64) -> Result<ShearLoad> {
+        match &self.history_along {
+            None => Ok(ShearLoad::force([0.0; 2])),
+            Some(history) if dt > 0.0 => history.load(|history| history.checked_before(time, true)),
+            Some(history) => history.load(|history| history.checked_at(time, true)),
+        }
+    }
+
+    /// About the most that a contact that sticks resists a motion along the surface \[N/m\]: as a circle about all cells
+    /// does; what is periodic yields between its contacts alone.
+    fn most_stiffness(&self) -> f64 {
+        let (State { region, history, .. }, grid) = (&self.state, self.normal().grid());
+        let [x1, x2] = [0, 1].map(|axis| region.cells[axis] as f64 * grid.spacing()[axis]);
+        let touches = self.contact_area() / (grid.lengths()[0] * grid.lengths()[1]);
+        let yields = if self.response.periodic().contains(&true) { 1.0 - touches } else { 1.0 };
+        x1.hypot(x2) / (history.rule().compliance() * yields.max(SMALL))
+    }
 }
 
 impl Contact for FrictionContact {
     fn step_to(&mut self, time: f64, load: Load) -> Result<StepReport> {
         let dt = time - self.normal().time();
-        let shear = match &self.history_along {
-            None => ShearLoad::force([0.0; 2]),
-            Some(history) if dt > 0.0 => history.load(|history| history.checked_before(time, true))?,
-            Some(history) => history.load(|history| history.checked_at(time, true))?,
-        };
+        let shear = self.sheared_at(time, dt)?;
         match self.advance(&AtomicBool::new(false), dt, load, shear, self.tolerance)? {
             Outcome::Holds(report) => Ok(report.normal),
             Outcome::Slides { direction, over_limit } => {
@@ -141,44 +156,34 @@ impl Contact for FrictionContact {
         self.stick_cells() == 0 && self.state.solution.cells.contains(&Cell::Slip)
     }
 
-    /// Where a body that is moved and slides sticks again. It is about as stiff as a circle about all cells at most; one
-    /// that is periodic yields between its contacts alone.
-    fn unseen(&self, [before, middle]: [&Self; 2]) -> [f64; 2] {
+    /// Where a body that is moved and slides sticks again.
+    fn unseen(&self, others: [&Self; 2]) -> [f64; 2] {
+        let [before, middle] = others;
         if !middle.slides() || self.lateral().iter().all(|history| history.before(self.time()).is_force()) {
             return [0.0; 2];
         }
-        let ([q1, q2, q3], arm) = (FrictionContact::force(self), self.contact_area().sqrt());
-        let force = |contact: &Self| size(FrictionContact::force(contact), arm.recip());
-        let (first, middle_force, last) = (force(before), force(middle), force(self));
+        let all = [before, middle, self];
+        let (force, arm) = (FrictionContact::force(self), self.contact_area().sqrt());
+        let [first, between, last] = all.map(|contact| size(FrictionContact::force(contact), arm.recip()));
         // while it slid
-        let first = if before.slides() { first } else { middle_force };
-        let [lost, half_lost, all_lost] = [before, middle, self].map(|contact| contact.state.work[1]);
-        let means = [first + middle_force, middle_force + last].map(|sum| 0.5 * sum);
-        let slid = [(half_lost - lost) / means[0], (all_lost - half_lost) / means[1]];
+        let first = if before.slides() { first } else { between };
+        let [start, half, end] = all.map(|contact| contact.state.work[1]);
+        let slid = [(half - start) / (0.5 * (first + between)), (end - half) / (0.5 * (between + last))];
         let span = Span { now: before.time(), end: self.time() };
-        // what drives the body towards the force, as that of its work
+        // what moves the body towards the force, as that of its work
         let drive = |time: f64| {
-            let load =
-                |history: &dyn LoadHistory| if time > span.now { history.before(time) } else { history.at(time) };
-            let moved = |history: &Arc<dyn LoadHistory>| match load(&**history) {
-                Load::Approach { approach: motion, .. } => motion,
-                _ => 0.0,
+            let Ok(load) = self.sheared_at(time, time - span.now) else { return f64::NAN };
+            let along = |(component, force): (Component, f64)| {
+                if let Component::Motion(to) = component { to * force } else { 0.0 }
             };
-            self.lateral().iter().map(moved).zip([q1, q2, q3]).map(|(motion, force)| motion * force).sum::<f64>() / last
+            load.components.into_iter().zip(force).map(along).sum::<f64>() / last
         };
         let back = turned_back(slid, span, drive);
         if !(back > 0.0 && back < f64::INFINITY) {
             return [0.0; 2];
         }
-        let (State { region, history, largest: [far, most], .. }, grid) = (&self.state, self.normal().grid());
-        let [x1, x2] = [0, 1].map(|axis| region.cells[axis] as f64 * grid.spacing()[axis]);
-        let yields = if self.response.periodic().contains(&true) {
-            1.0 - self.contact_area() / (grid.lengths()[0] * grid.lengths()[1])
-        } else {
-            1.0
-        };
-        let stiffness = x1.hypot(x2) / (history.rule().compliance() * yields.max(SMALL));
-        let part = f64::max(back / far, (stiffness * back).min(2.0 * last) / most);
+        let [far, most] = self.state.largest;
+        let part = f64::max(back / far, (self.most_stiffness() * back).min(2.0 * last) / most);
         let part = (part - self.unresolved).max(0.0);
         [self.approach(), Contact::force(self)].map(|own| part * own.abs())
     }

@@ -217,17 +217,17 @@ pub trait Contact: Clone + Debug + Send + Sync + 'static {
         [self.approach() - other.approach(), self.force() - other.force()].map(f64::abs)
     }
 
-    #[doc(hidden)]
     /// By how much approach and force of this outcome may be off besides by what happened within the halves of its step
     /// and shows neither in them nor in the whole, given the state before and that between: nothing, but where a body
     /// that slides sticks again.
+    #[doc(hidden)]
     fn unseen(&self, _: [&Self; 2]) -> [f64; 2] {
         [0.0; 2]
     }
 
-    #[doc(hidden)]
     /// Whether all of the contact slides: where what moves it turns, it sticks and slips anew, and the next step is as
     /// short as after a corner.
+    #[doc(hidden)]
     fn slides(&self) -> bool {
         false
     }

@@ -125,7 +125,7 @@ impl Judge<StatesContact> for OnLevels {
         if yields { contact.levels.longest_growth() } else { MAX_GROWTH }
     }
 
-    fn aim(record: &Record<OnLevels>, contact: &StatesContact, _: &StatesContact, _: Span) -> f64 {
+    fn aim(record: &Record<OnLevels>, contact: &StatesContact, _: Span, _: f64) -> f64 {
         let of_load = if record.by_force { AIMS.aim_of_force } else { AIMS.aim };
         let of_body = if contact.levels.has_dashpot() { AIMS.aim_of_rates } else { 1.0 };
         of_body * of_load * record.tolerance

@@ -1,5 +1,6 @@
 //! Bodies that slide under a motion which slows down stick again as soon as it is slower than they creep: in a step that
-//! slides on in its mean, and in both of its halves. Forces of adaptive runs against many times finer steps of given ends.
+//! slides on, averaged over it, as both of its halves do. Forces of adaptive runs against many times finer steps of
+//! prescribed ends.
 
 use viscocontact::friction::{Coulomb, FrictionContact, ShearHistory};
 use viscocontact::prelude::*;

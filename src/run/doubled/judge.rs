@@ -64,13 +64,13 @@ pub(crate) trait Judge<C: Contact>: Default + Clone + Debug + Send + Sync + 'sta
         MAX_GROWTH
     }
 
-    /// Whether what a step did begins the time anew that its aims count from, as a corner does.
+    /// Whether what a step did begins the time anew that aims count from, as a corner does.
     fn begins_anew(_before: &C, _after: &C) -> bool {
         false
     }
 
-    /// The error that a step of `contact` aims at, which leads to `after`.
-    fn aim(record: &Record<Self>, contact: &C, after: &C, span: Span) -> f64;
+    /// The error that a step aims at, counted from the last corner.
+    fn aim(record: &Record<Self>, contact: &C, span: Span, corner: f64) -> f64;
 
     /// The first time within a step at which it has to end: where bodies touch or part, or a force begins or ends.
     fn event(

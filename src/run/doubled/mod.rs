@@ -123,10 +123,9 @@ impl<C: Contact, J: Judge<C>> Doubled<C, J> {
                 report => report?,
             };
             let error = J::error(&self.record, contact, &mut self.tries, history, span, &report)?;
-            let (aim, most) = (
-                J::aim(&self.record, contact, &self.tries.halves, span),
-                if error > 0.0 { longest } else { MAX_GROWTH },
-            );
+            let corner = if J::begins_anew(contact, &self.tries.halves) { now } else { self.record.corner };
+            let aim = J::aim(&self.record, contact, span, corner);
+            let most = if error > 0.0 { longest } else { MAX_GROWTH };
             let growth = (aim / error).powf(1.0 / J::ORDER).clamp(MIN_GROWTH, most);
             if error <= ALLOWED * aim || is_late && length <= shortest {
                 self.record.next = match event {
@@ -140,9 +139,7 @@ impl<C: Contact, J: Judge<C>> Doubled<C, J> {
                 self.record.greatest = J::greatest(&self.record, &self.tries.halves);
                 self.record.touches = event.is_some() && contact.is_separated();
                 self.record.worst = Some(self.record.worst.map_or(error, |worst| worst.max(error)));
-                if J::begins_anew(contact, &self.tries.halves) {
-                    self.record.corner = now;
-                }
+                self.record.corner = corner;
                 J::copy(contact, &self.tries.halves);
                 J::accept(&self.record, contact);
                 return Ok(StepReport { dt: end - now, time_error: Some(error), ..report });

@@ -34,8 +34,7 @@ impl<C: Contact> Judge<C> for Plain {
         before.is_separated() && !after.is_separated()
     }
 
-    fn aim(record: &Record<Plain>, contact: &C, after: &C, Span { now, end }: Span) -> f64 {
-        let corner = if Self::begins_anew(contact, after) { now } else { record.corner };
+    fn aim(record: &Record<Plain>, _: &C, Span { now, end }: Span, corner: f64) -> f64 {
         let (run, since) = (record.until - record.start, end - corner);
         record.tolerance * (end - now) * (OF_RUN / run + OF_DECADE / since)
     }

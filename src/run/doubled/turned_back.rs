@@ -2,7 +2,8 @@
 
 use crate::run::passage::Span;
 
-/// Looks at what moves a body, within the second half of a step.
+/// Looks at what moves a body, within the second half of a step: it deviates from a parabola by little in a step, and
+/// three neighbours are followed by one, so that the maximum is off by the third power of their distance.
 const LOOKS: u32 = 16;
 
 /// How far a body that slides by so much in the halves of a step would turn back from its maximum in the second one, moved
