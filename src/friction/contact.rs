@@ -11,7 +11,7 @@ use crate::error::{Error, Refusal, Result, Special, UserError};
 use crate::friction::history::ShearHistory;
 use crate::friction::kernel::{TangentialKernel, TangentialResponse};
 use crate::friction::limit::FrictionLimit;
-use crate::friction::load::{Component, LARGEST, ShearLoad};
+use crate::friction::load::{Component, LARGEST, ShearLoad, size};
 use crate::friction::newton::{NEWTON, Work};
 use crate::friction::problem::{Cell, Problem, Solution, take_motion};
 use crate::friction::region::extent;
@@ -65,6 +65,8 @@ pub struct FrictionContact {
     pub(super) tolerance: f64,
     /// Differences between outcomes of a step, over the maximum so far, that a run does not resolve.
     pub(super) unresolved: f64,
+    /// Forces and torque of a history below these are none.
+    pub(super) least: [f64; 3],
     pub(super) history_along: Option<ShearHistory>,
     /// A run that was saved and resumed.
     pub(super) saved_run: Option<Arc<SavedRun<Plain>>>,
@@ -125,6 +127,7 @@ impl FrictionContact {
             limit: Arc::new(limit),
             response,
             unresolved: 0.0,
+            least: [0.0; 3],
             history_along: None,
             saved_run: None,
         })
@@ -386,11 +389,6 @@ impl FrictionContact {
             whole
         })
     }
-}
-
-/// A motion as a length, or a force: angles times the arm, torques over it; nothing of bodies without contact.
-pub(super) fn size(of: [f64; 3], arm: f64) -> f64 {
-    of[0].hypot(of[1]).hypot(if arm.is_finite() { arm * of[2] } else { 0.0 })
 }
 
 fn not_a_limit(value: f64) -> Error {

@@ -57,6 +57,17 @@ impl ShearLoad {
         self
     }
 
+    /// Without forces and a torque that are less than these.
+    pub(super) fn without_less_than(mut self, least: [f64; 3]) -> ShearLoad {
+        for (component, least) in self.components.iter_mut().zip(least) {
+            match component {
+                Component::Force(force) if force.abs() < least => *force = 0.0,
+                _ => {}
+            }
+        }
+        self
+    }
+
     pub(super) fn validate(&self) -> Result<()> {
         for (component, [force, motion]) in self.components.iter().zip([
             ["force along x1", "displacement along x1"],
@@ -71,4 +82,9 @@ impl ShearLoad {
         }
         Ok(())
     }
+}
+
+/// A motion as a length, or a force: angles times the arm, torques over it; nothing of bodies without contact.
+pub(super) fn size(of: [f64; 3], arm: f64) -> f64 {
+    of[0].hypot(of[1]).hypot(if arm.is_finite() { arm * of[2] } else { 0.0 })
 }

@@ -8,9 +8,9 @@ use std::sync::atomic::AtomicBool;
 use crate::contact::StepReport;
 use crate::error::{Error, Result};
 use crate::fields::Fields;
-use crate::friction::contact::{FrictionContact, size};
+use crate::friction::contact::FrictionContact;
 use crate::friction::history::ShearHistory;
-use crate::friction::load::{Component, ShearLoad};
+use crate::friction::load::{Component, ShearLoad, size};
 use crate::friction::problem::Cell;
 use crate::friction::report::Outcome;
 use crate::friction::state::State;
@@ -70,11 +70,12 @@ impl FrictionContact {
 
     /// What acts along the surface at the end of a step of length `dt` to a `time`: at a jump of no time, else before it.
     fn sheared_at(&self, time: f64, dt: f64) -> Result<ShearLoad> {
-        match &self.history_along {
+        let load = match &self.history_along {
             None => Ok(ShearLoad::force([0.0; 2])),
             Some(history) if dt > 0.0 => history.load(|history| history.checked_before(time, true)),
             Some(history) => history.load(|history| history.checked_at(time, true)),
-        }
+        };
+        load.map(|load| load.without_less_than(self.least))
     }
 
     /// About the most that a contact that sticks resists a motion along the surface \[N/m\]: as a circle about all cells
@@ -150,6 +151,10 @@ impl Contact for FrictionContact {
             let (off, left) = ((own - other).abs(), self.tolerance * own.abs());
             (if off <= left { 0.0 } else { off - left }) + part * own.abs()
         })
+    }
+
+    fn neglect(&mut self, least: [f64; 3]) {
+        self.least = least;
     }
 
     fn slides(&self) -> bool {

@@ -64,7 +64,7 @@ impl Clone for FrictionContact {
         }
         self.normal.go_to(&other.normal.computation.state);
         self.take_state(&other.state);
-        (self.tolerance, self.unresolved) = (other.tolerance, other.unresolved);
+        (self.tolerance, self.unresolved, self.least) = (other.tolerance, other.unresolved, other.least);
         self.history_along.clone_from(&other.history_along);
         self.saved_run.clone_from(&other.saved_run);
     }

@@ -232,6 +232,11 @@ pub trait Contact: Clone + Debug + Send + Sync + 'static {
         false
     }
 
+    /// Takes forces along the surface that a history prescribes below these for none: where all loads go through nothing,
+    /// normal ones that are lost in rounding carry none.
+    #[doc(hidden)]
+    fn neglect(&mut self, _: [f64; 3]) {}
+
     /// The report of a step of length `dt` to this state, without work: what [`Contact::step_to`] of a contact of
     /// your own returns.
     #[cfg(feature = "contacts")]

@@ -65,6 +65,10 @@ impl Contact for StatesContact {
         StatesContact::is_separated(self)
     }
 
+    fn neglect(&mut self, [least, ..]: [f64; 3]) {
+        self.levels.shear.iter_mut().for_each(|shear| shear.least = least);
+    }
+
     fn slides(&self) -> bool {
         self.level() > 0.0 && self.stick_level() == 0.0
     }

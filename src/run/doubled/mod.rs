@@ -70,6 +70,7 @@ impl<C: Contact, J: Judge<C>> Doubled<C, J> {
             self.record.look(contact, history)?;
             self.passage.reserve(self.record.bends.as_ref().map_or(0, Vec::len).max(self.record.bends_along.len()));
         }
+        contact.neglect(self.record.greatest_along.map(|greatest| f64::EPSILON * greatest));
         let rounded = self.rounded(contact, history);
         match course.given {
             Some((time, &[load, ..])) => contact.step_to(time, rounded.round(load)),

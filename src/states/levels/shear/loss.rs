@@ -5,7 +5,7 @@ use crate::hereditary::GroupHistory;
 use crate::run::doubled::turned_back::turned_back;
 use crate::run::passage::Span;
 use crate::states::curve::ElasticStates;
-use crate::states::levels::{Demand, Group, Levels};
+use crate::states::levels::{Demand, Group, Levels, ROUNDING};
 
 /// What levels lose that begin to slip while the edge moves, over what they would lose if it stood where it ends. A zone
 /// that slips is `now` so wide, was `before`, and its inner end went so far in the step; each level that it passes loses
@@ -99,7 +99,7 @@ impl Levels {
 
     /// How far apart two outcomes of one step are along the surface: ∫ |δU| dδ, the most that their displacements can
     /// ever differ by; the displacements; the forces; what slip has dissipated; and the work. In the first, levels that
-    /// began to slip after the state `before` count as `swept`.
+    /// began to slip after the state `before`, or that the edge passed, count as `swept`.
     pub(in crate::states) fn shear_distance(&self, other: &Levels, before: &Levels, swept: f64) -> Option<[f64; 5]> {
         let (one, two, from) = (self.shear.as_ref()?, other.shear.as_ref()?, before.shear.as_ref()?);
         let (own, others) = (self.history.sheared()?, other.history.sheared()?);
@@ -107,12 +107,15 @@ impl Levels {
         // grows without a turn is not told apart from that: there all that slips counts as swept
         let stick = one.stick.min(two.stick);
         let edge = if stick < from.stick { from.stick } else { before.level };
+        let [least, most] = [f64::min, f64::max].map(|of| [self.level, other.level].into_iter().fold(before.level, of));
+        let passed = least * (1.0 + ROUNDING)..=most * (1.0 + ROUNDING);
         let (mut far, mut k, mut lower) = (0.0, 0, 0.0);
         for (group, now) in other.groups.iter().zip(others) {
             loop {
                 let inside = self.groups.get(k).filter(|own| own.top < group.top);
                 let Group { top, motions, .. } = *inside.unwrap_or(group);
-                let counts = if stick < top && top <= edge { swept } else { 1.0 };
+                let is_swept = stick < top && top <= edge || passed.contains(&top);
+                let counts = if is_swept { swept } else { 1.0 };
                 far += counts * (now - own.get(k).copied().unwrap_or(0.0)).abs() * (motions.depth - lower);
                 lower = motions.depth;
                 if inside.is_none() {

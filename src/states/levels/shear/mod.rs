@@ -45,6 +45,9 @@ pub(in crate::states) struct Shear {
     pub(in crate::states) slid: f64,
     /// Level up to which the contact sticks \[m²\].
     pub(in crate::states) stick: f64,
+    /// Forces of a history along the surface below this are none \[N\].
+    #[cfg_attr(feature = "checkpoint", serde(skip))]
+    pub(in crate::states) least: f64,
     /// Maximum so far of |displacement|, of |force| and of |work|.
     pub(in crate::states) maxima: [f64; 3],
     /// Work that the body has done along the surface, and the part of it that slip has dissipated \[J\].
@@ -52,7 +55,7 @@ pub(in crate::states) struct Shear {
     pub(in crate::states) lost: f64,
 }
 
-clone_by_fields! { Shear { whole, trial, tractions, mean, force, motion, slid, stick, maxima, work, lost } }
+clone_by_fields! { Shear { whole, trial, tractions, mean, force, motion, slid, stick, least, maxima, work, lost } }
 
 impl Shear {
     #[cfg(feature = "checkpoint")]
