@@ -6,5 +6,5 @@ mod rough;
 mod statistics;
 
 pub use height_map::{Form, HeightMap, LengthUnit, ResampledMap, ResamplingError};
-pub use rough::{Anisotropy, Rough, RoughSpec, Roughness, SharedRough};
+pub use rough::{Anisotropy, Rough, RoughSpec, Roughness};
 pub use statistics::SurfaceStatistics;

@@ -3,8 +3,8 @@
 use std::f64::consts::{PI, TAU};
 
 use crate::error::{Refusal, Result, count_within, finite, positive};
+use crate::fft::waves;
 use crate::geometry::HeightMap;
-use crate::geometry::surfaces::height_spectrum::{HeightSpectrum, wave_numbers};
 use crate::memory;
 
 /// Statistics of a surface over its known points.
@@ -82,11 +82,9 @@ impl HeightMap {
 
 /// From the Fourier series of a periodic map.
 fn spectral_derivatives(map: &HeightMap) -> MeanSquares {
-    let spectrum = HeightSpectrum::of(map.cells(), map.heights());
-    let lengths = map.lengths();
-    spectrum.waves().fold([0.0; 3], |[a, b, c], wave| {
-        let [q1, q2] = wave_numbers(wave.number, lengths).map(|q| q * q);
-        let power = wave.count * spectrum.at(wave).norm_sqr();
+    waves(&map.grid(), map.heights()).fold([0.0; 3], |[a, b, c], (q, amplitude, count)| {
+        let [q1, q2] = q.map(|q| q * q);
+        let power = count * amplitude.norm_sqr();
         [a + power * q1, b + power * q2, c + power * (0.5 * (q1 + q2)).powi(2)]
     })
 }
@@ -185,13 +183,11 @@ impl HeightMap {
         }
         let rings = (last / width * (1.0 + 1e-12)) as usize;
         let mut sums = vec![[0.0; 3]; rings + 1];
-        let spectrum = HeightSpectrum::of(cells, &field);
-        for wave in spectrum.waves() {
-            let [q1, q2] = wave_numbers(wave.number, lengths);
+        for ([q1, q2], amplitude, number) in waves(&self.grid(), &field) {
             let q = q1.hypot(q2);
             if let Some(sum) = sums.get_mut((q / width).round() as usize) {
-                let power = spectrum.at(wave).norm_sqr();
-                sum.iter_mut().zip([1.0, q, area * power]).for_each(|(s, value)| *s += wave.count * value);
+                let power = amplitude.norm_sqr();
+                sum.iter_mut().zip([1.0, q, area * power]).for_each(|(s, value)| *s += number * value);
             }
         }
         let rings = sums.into_iter().skip(1).filter(|[count, ..]| *count > 0.0);
