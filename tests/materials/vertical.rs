@@ -120,11 +120,13 @@ fn a_law_has_its_factors_at_every_temperature() {
     assert_eq!(format!("{:?}", entropic.clone().without_vertical_factors()), format!("{plain:?}"));
     assert_eq!(entropic.without_vertical_factors(), plain);
 
-    // C(t) of a material, in words too
+    // C(t) of a material
     let zener = || Zener::relaxing(4.0e6, 1.0e6, 0.5).unwrap();
     let [cold, warm] = [REFERENCE, 330.0].map(|kelvin| Material::incompressible(table.at(zener(), kelvin).unwrap()));
     assert!((cold.contact_compliance(0.0) / warm.contact_compliance(0.0) - 1.1).abs() < 1e-12);
-    assert!(warm.to_string().contains("1/C from 1.760e7 Pa to 4.400e6 Pa"), "{warm}");
+    for (t, modulus) in [(0.0, 1.76e7), (1.0e6, 4.4e6)] {
+        assert!((warm.contact_compliance(t) * modulus - 1.0).abs() < 1e-12, "{warm:?}");
+    }
     let rod = Material::from_tension(Tension(table.at(zener(), 330.0).unwrap()), 0.5).unwrap();
     assert!((rod.contact_compliance(0.0) * 4.4e6 / 0.75 - 1.0).abs() < 1e-12);
 }
