@@ -106,7 +106,7 @@ impl TemperatureHistory {
         let given = law.get().law.clone();
         let function: Option<Function> = temperature.extract().ok();
         let history = if let Some(constant) = number(&temperature) {
-            rh::TemperatureHistory::constant(given, constant)
+            rh::TemperatureHistory::table(given, &[(0.0, constant)])
         } else if let Some(function) = function.clone() {
             rh::TemperatureHistory::function(given, move |t| raised_number(function.call((t,)), f64::NAN), &corners)
         } else {

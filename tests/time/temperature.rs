@@ -54,7 +54,7 @@ fn arrhenius_laws_continue_one_another() {
 fn ageing_bodies_creep_in_the_time_of_struik() {
     for (rate, start) in [(0.0, 10.0), (0.5, 10.0), (0.7, 1.0e3), (1.0, 1.0), (1.0, 1.0e7)] {
         let reference = 100.0;
-        let constant = TemperatureHistory::constant(wlf(), REFERENCE).unwrap();
+        let constant = TemperatureHistory::table(wlf(), &[(0.0, REFERENCE)]).unwrap();
         let function = TemperatureHistory::function(wlf(), |_| REFERENCE, &[]).unwrap();
         let primitive = |age: f64| {
             let shift: f64 = 1.0 - rate;
@@ -73,7 +73,7 @@ fn ageing_bodies_creep_in_the_time_of_struik() {
         let short = 1e-6 * (start / reference).powf(-rate);
         close(aged.reduced_time(0.0, 1e-6).unwrap(), short, 1e-6 / start, "a short time");
     }
-    let early = TemperatureHistory::constant(wlf(), REFERENCE).unwrap().ageing(2.0, 3600.0, 3600.0).unwrap();
+    let early = TemperatureHistory::table(wlf(), &[(0.0, REFERENCE)]).unwrap().ageing(2.0, 3600.0, 3600.0).unwrap();
     refused([(early.reduced_time(-7200.0, -3700.0).err(), "age")]);
 }
 
@@ -251,7 +251,7 @@ fn series_are_fitted_over_the_reduced_times_of_a_run() {
 fn stress_of_a_changing_poisson_ratio_is_that_of_the_reduced_time() {
     let polymer = || Material::elastic_bulk(zener(), 3.0e6).unwrap();
     let factor = wlf().shift_factor(320.0).unwrap();
-    let warm = builder_on(grid(24), polymer()).temperature(TemperatureHistory::constant(wlf(), 320.0).unwrap());
+    let warm = builder_on(grid(24), polymer()).temperature(TemperatureHistory::table(wlf(), &[(0.0, 320.0)]).unwrap());
     let scenes = [(warm, factor), (builder_on(grid(24), polymer()), 1.0)];
     let peaks = scenes.map(|(scene, factor)| {
         let mut contact = scene.settings(settings()).build().unwrap();

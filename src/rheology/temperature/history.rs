@@ -100,16 +100,9 @@ pub(crate) fn vertical_factors(what: &str) -> Error {
 }
 
 impl TemperatureHistory {
-    /// A temperature \[K\] that never changes.
-    ///
-    /// # Errors
-    /// As [`TimeTemperature::shift_factor`]; if the law has vertical factors.
-    pub fn constant(law: TimeTemperature, temperature: f64) -> Result<TemperatureHistory> {
-        TemperatureHistory::table(law, &[(0.0, temperature)])
-    }
-
     /// The temperature through a `table` of times \[s\] and temperatures \[K\]: linear in between, constant before the
-    /// first and after the last. Two entries at the same time are a jump. A ramp is a table of two.
+    /// first and after the last. Two entries at the same time are a jump. A ramp is a table of two, and a temperature
+    /// that never changes of one.
     ///
     /// # Errors
     /// If there is no entry, a time is not finite or earlier than the one before, for a temperature as
@@ -152,7 +145,7 @@ impl TemperatureHistory {
     /// use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
     ///
     /// let law = TimeTemperature::arrhenius(300.0e3, 293.15)?;
-    /// let glass = TemperatureHistory::constant(law, 293.15)?.ageing(1.0, 3600.0, 3600.0)?;
+    /// let glass = TemperatureHistory::table(law, &[(0.0, 293.15)])?.ageing(1.0, 3600.0, 3600.0)?;
     /// // with μ = 1 a test creeps by the logarithm of the age: t_ref ln(1 + t/t_e)
     /// assert!((glass.reduced_time(0.0, 36_000.0)? - 3600.0 * 11.0_f64.ln()).abs() < 1e-9);
     /// # Ok::<(), viscocontact::Error>(())
