@@ -127,8 +127,3 @@ impl TemperatureHistory {
         self.history.reduced_time(start, end).or_raise()
     }
 }
-
-changes! {TemperatureHistory, slf:
-    /// The same with physical ageing: times grow as (age/`reference`)^`rate`, the age being `start` [s] at time 0.
-    ageing(rate: f64, reference: f64, start: f64) = slf.get().history.clone().ageing(rate, reference, start);
-}

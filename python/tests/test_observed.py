@@ -263,8 +263,8 @@ def test_more_of_materials():
     assert table.extrapolated().shift_factor(320.0) < 1e-4
     below = vc.TimeTemperature.wlf(17.44, 51.6, 373.15).with_arrhenius_below(373.15, 200e3)
     assert 1 < below.shift_factor(363.15) < vc.TimeTemperature.wlf(17.44, 51.6, 373.15).shift_factor(363.15)
-    glass = vc.TemperatureHistory(vc.TimeTemperature.arrhenius(300e3, 293.15), 293.15).ageing(1.0, 3600.0, 3600.0)
-    assert copy.deepcopy(glass).reduced_time(0.0, 7200.0) == pytest.approx(3600 * np.log(3))
+    warm = vc.TemperatureHistory(vc.TimeTemperature.arrhenius(300e3, 293.15), 298.15)
+    assert copy.deepcopy(warm).reduced_time(0.0, 60.0) == warm.reduced_time(0.0, 60.0) > 60
 
 
 def test_more_of_surfaces():
