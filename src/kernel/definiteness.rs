@@ -8,8 +8,8 @@ const STEPS: usize = 60;
 /// Eigenvalues that are negative by less than this part of the largest are rounding errors.
 const ROUNDING: f64 = 1e-10;
 
-/// Whether the Lanczos method finds a symmetric operator on fields of `cells` values positive definite but for rounding:
-/// it sees the spectrum from inside.
+/// Whether the Lanczos method, which sees the spectrum from inside, finds a symmetric operator on fields of `cells`
+/// values positive definite but for rounding.
 pub(super) fn is_positive(operator: &SpectralOperator, cells: usize) -> bool {
     let mut work = operator.workspace();
     let (mut previous, mut image) = (vec![0.0; cells], vec![0.0; cells]);

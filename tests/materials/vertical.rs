@@ -46,8 +46,9 @@ fn isotherm(experiment: Experiment, body: &RelaxationSpectrum, law: &TimeTempera
             Measurements::relaxation(&x.map(|t| (t, stiff * body.modulus(t / slow))).collect::<Vec<_>>())
         }
         _ => {
-            let row = |w: f64| (w, stiff * body.complex_modulus(w * slow).re, stiff * body.complex_modulus(w * slow).im);
-            Measurements::dynamic(&x.map(row).collect::<Vec<_>>())
+            let modulus = |w: f64| (w, stiff * body.complex_modulus(w * slow));
+            let rows: Vec<_> = x.map(modulus).map(|(w, modulus)| (w, modulus.re, modulus.im)).collect();
+            Measurements::dynamic(&rows)
         }
     };
     Isotherm::new(kelvin, measured.unwrap()).unwrap()

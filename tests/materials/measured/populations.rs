@@ -196,7 +196,8 @@ fn vertical_shifts_are_found_on_request() {
                 let mut value = |exact: f64| factors[k] * exact * (5e-3 * noise()).exp();
                 let table = if dynamic {
                     let row = |&w: &f64| {
-                        (w, value(spectrum.complex_modulus(w * shift).re), value(spectrum.complex_modulus(w * shift).im))
+                        let modulus = spectrum.complex_modulus(w * shift);
+                        (w, value(modulus.re), value(modulus.im))
                     };
                     Measurements::dynamic(&x.iter().map(row).collect::<Vec<_>>())
                 } else {

@@ -39,7 +39,6 @@ impl HeightMap {
         map.periodic = self.periodic && (0..2).all(|axis| (new[axis] / old[axis] - 1.0).abs() < 1e-9);
         Ok(map)
     }
-
 }
 
 #[cfg(test)]
