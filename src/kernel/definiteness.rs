@@ -5,7 +5,7 @@ use crate::sum::sum_of_pairs;
 
 /// Lanczos steps: the extreme eigenvalues converge first.
 const STEPS: usize = 60;
-/// Eigenvalues that are negative by less than this part of the largest are rounding errors.
+/// Eigenvalues that are negative by less than this part of a bound of all of them are rounding errors.
 const ROUNDING: f64 = 1e-10;
 
 /// Whether the Lanczos method, which sees the spectrum from inside, finds a symmetric operator on fields of `cells`
