@@ -1,7 +1,6 @@
 //! Interpolation of a map onto another grid.
 
 use super::HeightMap;
-use super::nothing_known;
 use crate::error::Result;
 use crate::{Grid, memory};
 
@@ -45,6 +44,7 @@ impl HeightMap {
 mod tests {
     use approx::assert_abs_diff_eq;
 
+    use super::super::nothing_known;
     use super::super::tests::{map_of, waves};
     use super::*;
     use crate::geometry::Geometry;
