@@ -35,14 +35,14 @@ impl Stencil {
         let window = (before - 1).clamp(0, (last - 3).max(0));
         let index = [0, 1, 2, 3].map(|k| (window + k).min(last) as usize);
         let mut stencil = Stencil { index, weights: [0.0; 4] };
-        for k in 0..4 {
+        for (k, weight) in weights.into_iter().enumerate() {
             let node = before - 1 + k as isize;
             let end = node.clamp(0, last);
             let next = if node < 0 { 1.min(last) } else { (last - 1).max(0) };
             let beyond = (node - end).unsigned_abs() as f64;
             for (to, part) in [(end, 1.0 + beyond), (next, -beyond)] {
                 if part != 0.0 {
-                    stencil.weights[(to - window) as usize] += part * weights[k];
+                    stencil.weights[(to - window) as usize] += part * weight;
                 }
             }
         }
