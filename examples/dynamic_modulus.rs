@@ -69,7 +69,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         let slow = law.shift_factor(temperature)?;
         let mut rows: Vec<(f64, f64, f64)> = (0..=30)
             .map(|k| 10f64.powf(-1.0 + f64::from(k) / 10.0))
-            .map(|omega| (omega, truth.storage_modulus(omega * slow), truth.loss_modulus(omega * slow)))
+            .map(|omega| (omega, truth.complex_modulus(omega * slow).re, truth.complex_modulus(omega * slow).im))
             .collect();
         rows.iter_mut().for_each(|row| row.1 *= 1.0 + args.noise * noise());
         rows.iter_mut().for_each(|row| row.2 *= 1.0 + args.noise * noise());

@@ -133,14 +133,14 @@ fn press(args: &Args, roughness: &HeightMap) -> Result<(), Box<dyn Error>> {
     // a square within the map
     let side = roughness.lengths()[0].min(roughness.lengths()[1]);
     let cells = if args.quick { 96 } else { args.cells };
-    println!("\nwhat a grid of {:.0} µm loses of the map", side * 1e6);
+    println!("\nwhat a grid of {:.0} µm keeps of the map", side * 1e6);
     for n in [cells / 8, cells / 4, cells] {
-        let lost = roughness.resampled(&Grid::square(n, side)?)?.error;
+        let kept = roughness.resampled(&Grid::square(n, side)?)?.statistics()?;
         println!(
-            "{n:4}²: cells of {:5.2} µm, rms error {:.1e} µm, {:.2} % of the rms height",
+            "{n:4}²: cells of {:5.2} µm, rms height {:.3} µm, rms slope {:.4}",
             side / n as f64 * 1e6,
-            lost.rms * 1e6,
-            100.0 * lost.of_rms_height
+            kept.rms_height * 1e6,
+            kept.rms_slope
         );
     }
     let grid = Grid::square(cells, side)?;

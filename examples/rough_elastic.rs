@@ -51,7 +51,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let map = HeightMap::read(&args.map)?.leveled(Form::Curvature)?.filled()?;
     let side = map.lengths()[0].min(map.lengths()[1]);
     let grid = Grid::square(if args.quick { 128 } else { args.cells }, side)?;
-    let map = periodic(&map.resampled(&grid)?.map)?;
+    let map = periodic(&map.resampled(&grid)?)?;
     let slope = map.statistics()?.rms_slope;
     println!("{:.0} µm along each side, rms slope {slope:.3}, E* = {:e} Pa", side * 1e6, args.modulus);
 

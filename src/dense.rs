@@ -1,4 +1,4 @@
-//! Dense matrices of a few dozen columns: least squares, and the extreme eigenvalues of a tridiagonal matrix.
+//! Dense matrices of a few dozen columns: least squares.
 //!
 //! Series of a creep function need no more of dense algebra than this page, while a library for it
 //! takes most of a first build. `faer` is the reference of the tests, and solves the larger
@@ -143,37 +143,6 @@ pub(crate) fn norm(values: &[f64]) -> f64 {
         return if square.is_nan() { square } else { largest };
     }
     largest * values.iter().map(|value| (value / largest).powi(2)).sum::<f64>().sqrt()
-}
-
-/// The minimum and maximum eigenvalue of a symmetric tridiagonal matrix, by bisection of the number of
-/// negative pivots of A − x (Sturm's sequence: Golub & Van Loan, 2013, section 8.4.1).
-pub(crate) fn extreme_eigenvalues(diagonal: &[f64], beside: &[f64]) -> (f64, f64) {
-    let beside = |k: usize| beside.get(k).copied().filter(|_| k + 1 < diagonal.len()).unwrap_or(0.0);
-    let before = |k: usize| k.checked_sub(1).map_or(0.0, beside);
-    // Gershgorin's bound
-    let bound = (0..diagonal.len()).map(|k| diagonal[k].abs() + beside(k).abs() + before(k).abs()).fold(0.0, f64::max);
-    let below = |x: f64| {
-        let mut pivot = 1.0;
-        let negative = diagonal.iter().enumerate().filter(|&(k, own)| {
-            pivot = own - x - before(k) * (before(k) / pivot);
-            // a pivot of 0 counts as a small negative one
-            pivot = if pivot == 0.0 { -f64::EPSILON * bound } else { pivot };
-            pivot < 0.0
-        });
-        negative.count()
-    };
-    // the eigenvalue with so many below it
-    let find = |number: usize| {
-        let (mut low, mut high) = (-bound, bound);
-        loop {
-            let middle = 0.5 * low + 0.5 * high;
-            if middle <= low || middle >= high {
-                return middle;
-            }
-            if below(middle) > number { high = middle } else { low = middle }
-        }
-    };
-    (find(0), find(diagonal.len().saturating_sub(1)))
 }
 
 // against faer, which `data` brings

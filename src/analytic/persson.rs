@@ -2,7 +2,7 @@ use num_complex::Complex64;
 
 use crate::Grid;
 use crate::error::{Result, finite, positive, within};
-use crate::fft::{fourier_coefficients, wave_numbers};
+use crate::fft::waves;
 use crate::geometry::{Geometry, evaluate};
 
 /// Friction of a rubber on a rough surface by hysteresis, and its contact area, by Persson's theory (B. N. J.
@@ -65,19 +65,15 @@ impl PerssonFriction {
         within("the number γ", gamma, (0.0..=1.0).contains(&gamma), "in [0, 1]")?;
         finite("velocity along x1", velocity[0])?;
         finite("velocity along x2", velocity[1])?;
-        let (speed, [_, n2]) = (velocity[0].hypot(velocity[1]), grid.cells());
+        let speed = velocity[0].hypot(velocity[1]);
         // |q|, what the wave adds to G, and to the friction in full contact
-        let wave = |(k, (q, h)): (usize, ([f64; 2], Complex64))| {
-            let [n1, _] = grid.cells();
-            // the other half of the waves is conjugate to this one
-            let count = if k < n1 || 2 * (k / n1) == n2 { 1.0 } else { 2.0 };
+        let wave = |(q, h, count): ([f64; 2], Complex64, f64)| {
             let (omega, length) = (q[0] * velocity[0] + q[1] * velocity[1], q[0].hypot(q[1]));
             let (square, stiffness) = (count * h.norm_sqr() / pressure, modulus(omega.abs()));
             let loss = if speed > 0.0 { length * (omega / speed) * stiffness.im * omega.signum() } else { 0.0 };
             [length, square * length * length * stiffness.norm_sqr() / (8.0 * pressure), 0.5 * square * loss]
         };
-        let all = wave_numbers(grid).into_iter().zip(fourier_coefficients(&heights, grid.cells())).enumerate();
-        let mut waves: Vec<[f64; 3]> = all.skip(1).map(wave).collect();
+        let mut waves: Vec<[f64; 3]> = waves(grid, &heights).skip(1).map(wave).collect();
         waves.sort_by(|a, b| a[0].total_cmp(&b[0]));
         let share = |g: f64| libm::erf(0.5 / g.sqrt());
         let (mut coarser, mut friction) = (0.0, 0.0);

@@ -10,7 +10,6 @@
 //! | [`Wavy`] | A (1 − cos 2πx1/λ), or the sum of two such waves |
 //! | [`HeightMap`] | a measured surface |
 //! | [`Rough`] | a random self-affine surface |
-//! | [`SharedRough`] | a random self-affine surface distributed over ranks |
 //! | [`Sum`] | superposed shapes, such as roughness on a sphere |
 //! | [`Shifted`] | another shape, shifted in the plane |
 //! | [`Repeated`] | another shape, repeated periodically |

@@ -2,18 +2,15 @@
 
 use std::sync::Arc;
 
-use super::definiteness::least_eigenvalue;
+use super::definiteness::is_positive;
 use super::influence::indices;
 use super::{Body, Ends, InfluenceKernel, Layout, Love, MEMORY_WHILE_MADE, Strip, magnitude, wave_number};
 use crate::axis::Axis;
 use crate::error::{Error, Refusal, Result, count_within, within};
-use crate::rounded::rounded;
 use crate::{Grid, memory};
 
 /// Maximum difference of mirrored coefficients, relative to the maximum coefficient.
 const UNEQUAL: f64 = 1e-12;
-/// Negative eigenvalues below this are rounding, relative to the maximum eigenvalue.
-const ROUNDING: f64 = 1e-10;
 /// Sides of the cells of a half-space \[m\], and their ratios: within these, coefficients and their sums do not
 /// overflow.
 const RANGE: std::ops::RangeInclusive<f64> = 1e-100..=1e100;
@@ -134,7 +131,7 @@ impl InfluenceKernel {
     ///
     /// # Errors
     /// If a coefficient is not finite, or beyond ±1e100 m, or differs from the coefficients of its mirror images, or
-    /// if K is not positive definite: unless its spectrum is positive, its minimum eigenvalue is estimated by the
+    /// if K is not positive definite: unless its spectrum is positive, negative eigenvalues are looked for by the
     /// Lanczos method, which detects any far below zero. If there is not enough memory for coefficients and spectrum.
     pub fn from_coefficients(grid: &Grid, coefficient: impl Fn(isize, isize) -> f64) -> Result<InfluenceKernel> {
         let [n1, n2] = grid.cells();
@@ -171,19 +168,12 @@ impl InfluenceKernel {
                 "the check that a kernel is positive definite",
                 layout.workspace_bytes(None) + 3 * coefficients,
             )?;
-            let (minimum, maximum) = least_eigenvalue(whole, grid.len());
-            let positive = minimum > -ROUNDING * maximum;
-            if !positive {
-                let what = format!(
-                    "the influence coefficients are not positive definite: the minimum eigenvalue found is {} m, the \
-                     maximum {} m",
-                    rounded(minimum, 3),
-                    rounded(maximum, 3)
-                );
+            if !is_positive(whole, grid.len()) {
+                let what = "the influence coefficients are not positive definite: some pressure has a negative energy";
                 let remedy = "; check their signs, and that near cells influence each other more than distant ones";
                 return Err(Refusal::value("kernel_not_positive_definite", what, remedy)
-                    .naming("minimum eigenvalue")
-                    .valued(minimum)
+                    .naming("influence coefficients")
+                    .allowing("positive definite")
                     .into());
             }
         }

@@ -57,7 +57,7 @@ impl Asymmetry {
 mod tests {
     use approx::assert_abs_diff_eq;
 
-    use crate::observe::{hertz, sphere};
+    use crate::observe::tests::{hertz, sphere};
 
     #[test]
     fn a_sphere_off_the_origin() {

@@ -58,7 +58,7 @@ mod tests {
     use approx::assert_abs_diff_eq;
 
     use super::*;
-    use crate::observe::{hertz, sphere};
+    use crate::observe::tests::{hertz, sphere};
     use crate::prelude::*;
 
     #[test]

@@ -283,7 +283,7 @@ mod tests {
     use approx::assert_abs_diff_eq;
 
     use crate::load::Load;
-    use crate::observe::{hertz, sphere};
+    use crate::observe::tests::{hertz, sphere};
 
     #[test]
     fn mean_and_greatest_pressure_of_hertz() {

@@ -156,7 +156,7 @@ mod tests {
 
     use super::*;
     use crate::error::Error;
-    use crate::observe::sphere;
+    use crate::observe::tests::sphere;
 
     /// Patches of a map whose digits are pressures, on cells of 1 m × 2 m.
     fn patches(rows: &[&str], periodic: [bool; 2]) -> Patches {

@@ -44,7 +44,7 @@ mod tests {
 
     use crate::axis::Axis;
     use crate::error::Error;
-    use crate::observe::sphere;
+    use crate::observe::tests::sphere;
 
     #[test]
     fn profiles_are_lines_of_the_fields() {

@@ -170,7 +170,6 @@ fn temperature(history: &TemperatureHistory) -> String {
         law.rows().map(|(rows, _)| ("shift_factors", pairs(rows))),
         law.rows().map(|(_, extrapolated)| ("extrapolated", extrapolated.to_string())),
         (!below.is_empty()).then(|| ("arrhenius_below", pairs(&below))),
-        history.age().map(|age| ("ageing", array(age.map(number)))),
     ];
     let reference = ("reference", number(law.reference()));
     let law = [reference].into_iter().chain(constants.into_iter().flatten()).chain(energy);

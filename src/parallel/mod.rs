@@ -55,11 +55,10 @@
 //! Files and checkpoints are written by rank 0, files with the same bytes for any number of ranks; the other ranks
 //! send it their rows a piece at a time. A checkpoint is read by all ranks: `ViscoelasticContact::resume`.
 //!
-//! No rank needs memory for the whole grid: [`Builder::ranks`](crate::contact::Builder::ranks), given before the
-//! geometry, has each evaluate it on own rows, random surfaces are made by
-//! [`Rough::shared`](crate::geometry::Rough::shared), coefficients of the kernel are computed by rows and kept by
-//! columns. [`Builder::memory`](crate::contact::Builder::memory) returns the bytes of a rank. Clones and snapshots
-//! are of the same ranks.
+//! A contact needs memory for the whole grid on no rank: [`Builder::ranks`](crate::contact::Builder::ranks), given
+//! before the geometry, has each evaluate it on own rows, coefficients of the kernel are computed by rows and kept by
+//! columns. [`Builder::memory`](crate::contact::Builder::memory) returns the bytes of a rank. Measured and random
+//! surfaces hold all their heights on each rank. Clones and snapshots are of the same ranks.
 
 mod exchange;
 #[cfg(any(feature = "checkpoint", feature = "output"))]

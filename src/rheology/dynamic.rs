@@ -28,16 +28,6 @@ impl RelaxationSpectrum {
         };
         ends + self.terms().iter().map(branch).sum::<Complex64>()
     }
-
-    /// Storage modulus G′(ω) \[Pa\] at `omega` \[rad/s\].
-    pub fn storage_modulus(&self, omega: f64) -> f64 {
-        self.complex_modulus(omega).re
-    }
-
-    /// Loss modulus G″(ω) \[Pa\] at `omega` \[rad/s\].
-    pub fn loss_modulus(&self, omega: f64) -> f64 {
-        self.complex_modulus(omega).im
-    }
 }
 
 impl CreepSpectrum {

@@ -58,7 +58,6 @@
 //! | logarithmic | 1.3 … 2.7 |
 
 mod burgers;
-mod description;
 mod dynamic;
 mod elastic;
 mod fit;

@@ -129,11 +129,6 @@ impl CreepSpectrum {
         self.glassy + retarded + flow
     }
 
-    /// Creep rate dJ/dt \[1/(Pa·s)\] at t ≥ 0 \[s\].
-    pub fn rate(&self, t: f64) -> f64 {
-        self.fluidity + self.terms.iter().map(|&(c, lambda)| c / lambda * (-t / lambda).exp()).sum::<f64>()
-    }
-
     /// The same compliance multiplied by a positive `factor`.
     ///
     /// # Errors

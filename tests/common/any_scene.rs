@@ -55,8 +55,6 @@ pub struct AnyScene {
     pub(super) grid: Grid,
     pub(super) kernel: Arc<InfluenceKernel>,
     pub(super) shape: Box<dyn Geometry>,
-    /// In place of the shape: drawn by one process, or by all ranks together.
-    pub(super) rough: Option<RoughSpec>,
     pub(super) material: Material,
     pub(super) temperature: Option<TemperatureHistory>,
     pub settings: Settings,
@@ -223,7 +221,6 @@ impl AnyScene {
             kernel: Arc::new(InfluenceKernel::half_space(&grid).unwrap()),
             grid,
             shape: Box::new(shape),
-            rough: None,
             material: zener(),
             temperature: None,
             settings: Settings::default().with_window(false),
@@ -236,16 +233,11 @@ impl AnyScene {
 
     /// The contact of one process, or of one of `ranks`.
     pub fn contact(&self, ranks: Option<&Arc<dyn Ranks>>) -> Result<ViscoelasticContact, Error> {
-        let rough: Option<Box<dyn Geometry>> = match (self.rough, ranks) {
-            (Some(spec), Some(ranks)) => Some(Box::new(Rough::shared(&self.grid, spec, ranks)?)),
-            (Some(spec), None) => Some(Box::new(Rough::new(&self.grid, spec)?)),
-            (None, _) => None,
-        };
         let mut builder = ViscoelasticContact::builder(self.grid.clone());
         if let (Some(ranks), true) = (ranks, self.on_own_rows) {
             builder = builder.ranks(Arc::clone(ranks));
         }
-        builder = builder.geometry(rough.as_ref().unwrap_or(&self.shape)).material(self.material.clone());
+        builder = builder.geometry(&self.shape).material(self.material.clone());
         builder = builder.kernel(Arc::clone(&self.kernel)).settings(self.settings);
         if let Some(temperature) = &self.temperature {
             builder = builder.temperature(temperature.clone());

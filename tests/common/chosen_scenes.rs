@@ -79,8 +79,9 @@ pub fn sloped() -> [(AnyScene, &'static str); 4] {
     let cone = AnyScene::plain("cone", grid.clone(), Cone::new(0.8).unwrap(), pressed(1.0e-4));
     let beside = FnGeometry::new(|x1: f64, x2: f64| 0.9 * (x1 - 3.1e-5).hypot(0.8 * (x2 + 1.7e-5)));
     let beside = AnyScene::plain("elliptic cone", grid.clone(), beside, pressed(1.0e-4));
-    let steep = Some(RoughSpec::new(0.5e-3, 0.03e-3, Roughness::RmsSlope(0.4)));
-    let rough = AnyScene { rough: steep, steps: pressed(2.0e-5), ..rough() };
+    let rough = AnyScene { steps: pressed(2.0e-5), ..rough() };
+    let steep = RoughSpec::new(0.5e-3, 0.03e-3, Roughness::RmsSlope(0.4));
+    let rough = AnyScene { shape: Box::new(Rough::new(&rough.grid, steep).unwrap()), ..rough };
     let flat = AnyScene::plain("ball of a kilometre", grid, Sphere::new(1.0e3).unwrap(), pressed(1.0e-11));
     [(cone, "STEEP"), (beside, "STEEP"), (rough, "STEEP"), (flat, "FLAT")]
 }
@@ -102,10 +103,11 @@ pub fn all() -> Vec<AnyScene> {
     let whole = AnyScene::plain("whole", grid, sphere(), Steps::Given(steps.to_vec()));
     scenes.push(AnyScene { settings: whole.settings.with_symmetry(false), ..whole });
 
-    let drawn = AnyScene::plain("drawn at random", square(192), FnGeometry::new(waves), two(1.0e-2));
-    let rough = Some(RoughSpec::new(0.5e-3, 0.03e-3, Roughness::RmsSlope(0.02)));
+    let rough = RoughSpec::new(0.5e-3, 0.03e-3, Roughness::RmsSlope(0.02));
+    let rough = Rough::new(&square(192), rough).unwrap();
+    let drawn = AnyScene::plain("drawn at random", square(192), rough, two(1.0e-2));
     let kernel = Arc::new(InfluenceKernel::periodic(&drawn.grid).unwrap());
-    scenes.push(AnyScene { rough, kernel, ..drawn });
+    scenes.push(AnyScene { kernel, ..drawn });
 
     // shifted by a part of a cell by its Fourier series
     let grid = square(192);

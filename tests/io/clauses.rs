@@ -291,15 +291,11 @@ fn temperatures(t: &mut Table) {
     let wlf = || TimeTemperature::wlf(17.44, 51.6, 300.0).unwrap();
     let by_table = || TimeTemperature::table(&[(290.0, 10.0), (300.0, 1.0)], 300.0).unwrap();
     for (temperature, says) in [(0.0, "temperature = 0.0 → finite and > 0"), (20.0, "temperature = 20.0 → above T_ref - C2, …kelvin…"), (248.5, "shift factor = inf → in [1e-60, 1e60]: …kelvin…")] {
-        t.row(TemperatureHistory::constant(wlf(), temperature), Value, says);
+        t.row(TemperatureHistory::table(wlf(), &[(0.0, temperature)]), Value, says);
         t.row(wlf().shift_factor(temperature), Value, says);
     }
     t.row(by_table().shift_factor(310.0), Value, "temperature = 310.0 → in the table of shift factors…extrapolated)");
     t.row(TimeTemperature::arrhenius(3.0e5, 300.0).unwrap().shift_factor(20.0), Value, "temperature = 20.0 → from a third to three times that of an Arrhenius law: …kelvin…");
-    let ageing = |rate, reference, start| TemperatureHistory::constant(wlf(), 300.0).unwrap().ageing(rate, reference, start);
-    t.row(ageing(2.1, 1.0, 1.0), Value, "shift rate of ageing = 2.1 → in [0, 2]");
-    t.row(ageing(1.0, 0.0, 1.0), Value, "reference age = 0.0 → finite and > 0");
-    t.row(ageing(1.0, 1.0, NAN), Value, "age at the start = NaN → finite and > 0");
     let table = |rows: &[(f64, f64)]| TimeTemperature::table(rows, 300.0);
     t.row(table(&[(300.0, 1.0)]), Value, "rows of shift factors: 1 given, at least 2 needed");
     t.row(table(&[(300.0, 1.0), (290.0, 10.0)]), Value, "temperatures of shift factors[1] = 290.0 …must ascend");

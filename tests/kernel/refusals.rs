@@ -76,7 +76,18 @@ fn influences_that_no_body_has_are_refused() {
     }
     // the neighbours sink in more than the loaded cell
     let unstable = coefficient(&|i, j| if (i, j) == (0, 0) { 1.0 } else { 2.0 / (1 + i * i + j * j) as f64 });
-    assert!(unstable.code() == "kernel_not_positive_definite" && unstable.value().unwrap() < -0.1, "{unstable}");
+    says(&unstable, "kernel_not_positive_definite", "the influence coefficients are not positive definite");
+    let named = (unstable.name(), unstable.allowed(), unstable.remedy().is_some());
+    assert_eq!(named, (Some("influence coefficients"), Some("positive definite"), true));
+    // eigenvalues 1 + 2a cos(kπ/13), of which the least is 0 at a = 0.51496, while the embedding has a negative one
+    for (a, is_positive) in [(0.514, true), (0.516, false)] {
+        let of_neighbours = |i: isize, j: isize| match (i.abs(), j) {
+            (0, 0) => 1.0,
+            (1, 0) => a,
+            _ => 0.0,
+        };
+        assert_eq!(InfluenceKernel::from_coefficients(&grid, of_neighbours).is_ok(), is_positive, "{a}");
+    }
     // positive though its embedding in a period is not: the half-space, which many a grid has
     assert!(InfluenceKernel::from_coefficients(&grid, |i, j| 1.0 / (1.0 + (i * i + j * j) as f64)).is_ok());
 }

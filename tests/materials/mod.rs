@@ -30,8 +30,8 @@ fn fitted(
         Experiment::Relaxation => Measurements::relaxation(&pairs(times, &column(times, &|t| relaxation.modulus(t)))),
         _ => {
             let omega: Vec<f64> = times.iter().rev().map(|t| 1.0 / t).collect();
-            let storage = column(&omega, &|omega| relaxation.storage_modulus(omega));
-            let loss = column(&omega, &|omega| relaxation.loss_modulus(omega));
+            let storage = column(&omega, &|omega| relaxation.complex_modulus(omega).re);
+            let loss = column(&omega, &|omega| relaxation.complex_modulus(omega).im);
             Measurements::dynamic(&triples(&omega, &storage, &loss))
         }
     };

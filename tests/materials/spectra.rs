@@ -58,6 +58,8 @@ fn every_model_evaluates_its_formula() {
     let prony = GeneralizedMaxwell::new(0.75, &[(2.25, 1.0)]).unwrap();
     let zener = Zener::with_time(3.0, 1.0, 4.0).unwrap();
     assert_abs_diff_eq!(prony.creep_compliance(t) / zener.creep_compliance(t), 1.0, epsilon = 1e-14);
+    let relaxed = prony.creep_spectrum().unwrap().relaxation().modulus(t);
+    assert_abs_diff_eq!(relaxed / (0.75 + 2.25 * (-t).exp()), 1.0, epsilon = 1e-14);
 }
 
 #[test]
@@ -88,6 +90,14 @@ proptest! {
     #[test]
     fn random_spectra_are_reciprocal(creep in spectra()) {
         assert_reciprocal(&creep);
+    }
+
+    /// A body with all times doubled has J(t/2).
+    #[test]
+    fn times_of_random_spectra_scale(creep in spectra(), exponent in -11.0..11.0_f64) {
+        let t = 10f64.powf(exponent);
+        let (slow, fast) = (creep.slowed(2.0).unwrap().compliance(2.0 * t), creep.compliance(t));
+        prop_assert!((slow - fast).abs() <= 1e-10 * fast, "{slow} {fast}");
     }
 }
 

@@ -100,7 +100,7 @@ fn obeys(material: &Material, within: f64, moduli: impl Fn(f64) -> [f64; 2]) -> 
         let s = 10f64.powf(0.25 * f64::from(exponent));
         let [k, g] = moduli(s);
         let relative = carson(&contact, s) * (4.0 * g * (3.0 * k + g)) / (3.0 * k + 4.0 * g) - 1.0;
-        assert!(relative.abs() < within, "{material} s = {s:e}: {relative:e}");
+        assert!(relative.abs() < within, "{material:?} s = {s:e}: {relative:e}");
     }
     contact
 }

@@ -46,8 +46,9 @@ fn isotherm(experiment: Experiment, body: &RelaxationSpectrum, law: &TimeTempera
             Measurements::relaxation(&x.map(|t| (t, stiff * body.modulus(t / slow))).collect::<Vec<_>>())
         }
         _ => {
-            let row = |w: f64| (w, stiff * body.storage_modulus(w * slow), stiff * body.loss_modulus(w * slow));
-            Measurements::dynamic(&x.map(row).collect::<Vec<_>>())
+            let modulus = |w: f64| (w, stiff * body.complex_modulus(w * slow));
+            let rows: Vec<_> = x.map(modulus).map(|(w, modulus)| (w, modulus.re, modulus.im)).collect();
+            Measurements::dynamic(&rows)
         }
     };
     Isotherm::new(kelvin, measured.unwrap()).unwrap()
@@ -69,7 +70,6 @@ fn the_creep_at_each_temperature_is_what_was_measured_there() {
         let own = if law.wlf_constants().is_some() { found.wlf() } else { found.arrhenius() }.unwrap();
         assert!(own.has_vertical_factors() && found.shift_table().unwrap().has_vertical_factors());
         let (series, exact) = (found.fit().unwrap(), known.fit().unwrap());
-        assert_eq!(found.fit_at(290.0), found.shift_table().unwrap().at(series.clone(), 290.0));
         // beyond the window of the whole curve the creep is guessed
         for &kelvin in &kelvins[1..kelvins.len() - 1] {
             let (slow, stiff) = (law.shift_factor(kelvin).unwrap(), law.vertical_factor(kelvin).unwrap());
@@ -120,11 +120,13 @@ fn a_law_has_its_factors_at_every_temperature() {
     assert_eq!(format!("{:?}", entropic.clone().without_vertical_factors()), format!("{plain:?}"));
     assert_eq!(entropic.without_vertical_factors(), plain);
 
-    // C(t) of a material, in words too
+    // C(t) of a material
     let zener = || Zener::relaxing(4.0e6, 1.0e6, 0.5).unwrap();
     let [cold, warm] = [REFERENCE, 330.0].map(|kelvin| Material::incompressible(table.at(zener(), kelvin).unwrap()));
     assert!((cold.contact_compliance(0.0) / warm.contact_compliance(0.0) - 1.1).abs() < 1e-12);
-    assert!(warm.to_string().contains("1/C from 1.760e7 Pa to 4.400e6 Pa"), "{warm}");
+    for (t, modulus) in [(0.0, 1.76e7), (1.0e6, 4.4e6)] {
+        assert!((warm.contact_compliance(t) * modulus - 1.0).abs() < 1e-12, "{warm:?}");
+    }
     let rod = Material::from_tension(Tension(table.at(zener(), 330.0).unwrap()), 0.5).unwrap();
     assert!((rod.contact_compliance(0.0) * 4.4e6 / 0.75 - 1.0).abs() < 1e-12);
 }
@@ -141,10 +143,9 @@ fn what_vertical_factors_do_not_describe_is_refused() {
         assert!(remedies.iter().all(|remedy| error.to_string().contains(remedy)), "{error}");
         assert_eq!(error.kind(), ErrorKind::Unsupported);
     };
-    named(TemperatureHistory::constant(entropic.clone(), 310.0).err(), "a constant");
     named(TemperatureHistory::table(entropic.clone(), &[(0.0, 300.0), (1.0, 310.0)]).err(), "a table");
     named(TemperatureHistory::function(entropic.clone(), |t| 300.0 + t, &[]).err(), "a function");
-    assert!(TemperatureHistory::constant(entropic.clone().without_vertical_factors(), 310.0).is_ok());
+    assert!(TemperatureHistory::table(entropic.clone().without_vertical_factors(), &[(0.0, 310.0)]).is_ok());
 
     let rubber = || GeneralizedMaxwell::new(1.0e6, &[(10.0e6, 1.0e-2)]).unwrap();
     let grid = || Grid::square(24, 4.0e-3).unwrap();

@@ -55,7 +55,7 @@ fn every_model_obeys_every_law() {
     }
 }
 
-/// What a contact runs on: the series of every model over ten decades, its error and its laws, J ∗ G = t among them.
+/// What a contact runs on: the series of every model over ten decades, its error and its laws.
 #[test]
 fn every_series_obeys_every_law() {
     let times = laws::log_times(1e-5, 1e5);

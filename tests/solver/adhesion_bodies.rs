@@ -61,7 +61,7 @@ fn neither_symmetry_threads_nor_the_unit_of_time_change_a_state() {
         let (step, down) = (draws.scale(0.1, 3.0), draws.between(0.3, 0.8));
         let name = format!("scene {scene}: {}, {law:?}, {}", KINDS[kind], if elastic { "elastic" } else { "creeping" });
         let time_law = TimeTemperature::wlf(8.0, 100.0, 300.0).unwrap();
-        let warm = TemperatureHistory::constant(time_law, 310.0).unwrap();
+        let warm = TemperatureHistory::table(time_law, &[(0.0, 310.0)]).unwrap();
         // seconds for each second of reduced time
         let shift = 1.0 / warm.reduced_time(0.0, 1.0).unwrap();
         let run = |way: Way| {

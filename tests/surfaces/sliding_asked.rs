@@ -145,7 +145,7 @@ fn frequencies_beyond_the_data_are_told() {
         let body = GeneralizedMaxwell::new(0.3e6, &(0..=decades).map(&mut term).collect::<Vec<_>>()).unwrap();
         let spectrum = body.creep_spectrum().unwrap().relaxation();
         let count = (8.0 * (until / from).log10()) as i32;
-        let row = |w: f64| (w, spectrum.storage_modulus(w), spectrum.loss_modulus(w));
+        let row = |w: f64| (w, spectrum.complex_modulus(w).re, spectrum.complex_modulus(w).im);
         let rows: Vec<_> = (0..=count).map(|k| row(from * 10f64.powf(f64::from(k) / 8.0))).collect();
         let fit = Measurements::dynamic(&rows).unwrap().fit().unwrap();
         let depth = if periodic { 1e-2 } else { 0.1 };

@@ -49,34 +49,6 @@ fn arrhenius_laws_continue_one_another() {
     close(two.shift_factor(second.0 - 5.0).unwrap(), expected, 1e-9, "the second");
 }
 
-/// ∫ (t_e/t_ref)^(−μ) dt in closed form, at a constant temperature and, through the quadrature, at one that varies by nothing.
-#[test]
-fn ageing_bodies_creep_in_the_time_of_struik() {
-    for (rate, start) in [(0.0, 10.0), (0.5, 10.0), (0.7, 1.0e3), (1.0, 1.0), (1.0, 1.0e7)] {
-        let reference = 100.0;
-        let constant = TemperatureHistory::constant(wlf(), REFERENCE).unwrap();
-        let function = TemperatureHistory::function(wlf(), |_| REFERENCE, &[]).unwrap();
-        let primitive = |age: f64| {
-            let shift: f64 = 1.0 - rate;
-            if shift == 0.0 { reference * age.ln() } else { reference * (age / reference).powf(shift) / shift }
-        };
-        for (from, to) in [(0.0, 1.0), (5.0, 2.0e3), (0.0, 1.0e6)] {
-            let expected = primitive(start + to) - primitive(start + from);
-            for history in [&constant, &function] {
-                let aged = history.clone().ageing(rate, reference, start).unwrap();
-                let rounding = 1e-15 * primitive(start + to).abs() / expected;
-                close(aged.reduced_time(from, to).unwrap(), expected, 1e-12 + rounding, "ageing");
-            }
-        }
-        // from nothing to nothing, without cancellation
-        let aged = constant.ageing(rate, reference, start).unwrap();
-        let short = 1e-6 * (start / reference).powf(-rate);
-        close(aged.reduced_time(0.0, 1e-6).unwrap(), short, 1e-6 / start, "a short time");
-    }
-    let early = TemperatureHistory::constant(wlf(), REFERENCE).unwrap().ageing(2.0, 3600.0, 3600.0).unwrap();
-    refused([(early.reduced_time(-7200.0, -3700.0).err(), "age")]);
-}
-
 #[test]
 fn reduced_times_are_exact() {
     // 1/T linear in t: the exponent of Arrhenius' law is too
@@ -251,7 +223,7 @@ fn series_are_fitted_over_the_reduced_times_of_a_run() {
 fn stress_of_a_changing_poisson_ratio_is_that_of_the_reduced_time() {
     let polymer = || Material::elastic_bulk(zener(), 3.0e6).unwrap();
     let factor = wlf().shift_factor(320.0).unwrap();
-    let warm = builder_on(grid(24), polymer()).temperature(TemperatureHistory::constant(wlf(), 320.0).unwrap());
+    let warm = builder_on(grid(24), polymer()).temperature(TemperatureHistory::table(wlf(), &[(0.0, 320.0)]).unwrap());
     let scenes = [(warm, factor), (builder_on(grid(24), polymer()), 1.0)];
     let peaks = scenes.map(|(scene, factor)| {
         let mut contact = scene.settings(settings()).build().unwrap();

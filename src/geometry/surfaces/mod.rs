@@ -5,6 +5,6 @@ mod height_spectrum;
 mod rough;
 mod statistics;
 
-pub use height_map::{Form, HeightMap, LengthUnit, ResampledMap, ResamplingError};
-pub use rough::{Anisotropy, Rough, RoughSpec, Roughness, SharedRough};
+pub use height_map::{Form, HeightMap, LengthUnit};
+pub use rough::{Anisotropy, Rough, RoughSpec, Roughness};
 pub use statistics::SurfaceStatistics;

@@ -2,10 +2,9 @@
 
 use std::f64::consts::{PI, TAU};
 
-use crate::error::{Refusal, Result, count_within, finite, positive};
+use crate::error::{Refusal, Result, finite, positive};
+use crate::fft::waves;
 use crate::geometry::HeightMap;
-use crate::geometry::surfaces::height_spectrum::{HeightSpectrum, wave_numbers};
-use crate::memory;
 
 /// Statistics of a surface over its known points.
 ///
@@ -43,7 +42,7 @@ pub struct SurfaceStatistics {
 }
 
 /// An rms height below this, relative to the mean, is rounding.
-pub(super) const FLAT: f64 = 1e-14;
+const FLAT: f64 = 1e-14;
 
 /// Mean squares of the derivatives ∂z/∂x1 and ∂z/∂x2 and of the mean curvature.
 type MeanSquares = [f64; 3];
@@ -82,11 +81,9 @@ impl HeightMap {
 
 /// From the Fourier series of a periodic map.
 fn spectral_derivatives(map: &HeightMap) -> MeanSquares {
-    let spectrum = HeightSpectrum::of(map.cells(), map.heights());
-    let lengths = map.lengths();
-    spectrum.waves().fold([0.0; 3], |[a, b, c], wave| {
-        let [q1, q2] = wave_numbers(wave.number, lengths).map(|q| q * q);
-        let power = wave.count * spectrum.at(wave).norm_sqr();
+    waves(&map.grid(), map.heights()).fold([0.0; 3], |[a, b, c], (q, amplitude, count)| {
+        let [q1, q2] = q.map(|q| q * q);
+        let power = count * amplitude.norm_sqr();
         [a + power * q1, b + power * q2, c + power * (0.5 * (q1 + q2)).powi(2)]
     })
 }
@@ -127,26 +124,6 @@ fn central_differences(map: &HeightMap) -> MeanSquares {
 }
 
 impl HeightMap {
-    /// Probability density of the known heights: centres of `bins` equal intervals between the lowest and the highest
-    /// \[m\], and the density in each \[1/m\], whose integral is 1.
-    ///
-    /// # Errors
-    /// If there are no bins, or all heights are equal.
-    pub fn height_distribution(&self, bins: usize) -> Result<Vec<(f64, f64)>> {
-        count_within("bins of the heights", bins, bins > 0, "1 or more")?;
-        self.require_known()?;
-        let low = self.known().fold(f64::INFINITY, f64::min);
-        let range = positive("range of the heights", self.known().fold(low, f64::max) - low)?;
-        let width = positive("width of a bin", range / bins as f64)?;
-        let mut counts = memory::field("the bins of the heights", bins, 0_usize)?;
-        for z in self.known() {
-            counts[(((z - low) / range * bins as f64) as usize).min(bins - 1)] += 1;
-        }
-        let all = self.known().count() as f64;
-        let bin = |(k, count): (usize, usize)| (low + (k as f64 + 0.5) * width, count as f64 / all / width);
-        Ok(counts.into_iter().enumerate().map(bin).collect())
-    }
-
     /// Power spectral density of the heights about their mean: wave numbers q \[rad/m\] and the radial mean of C \[m⁴\]
     /// at each, normalised so that
     ///
@@ -185,13 +162,11 @@ impl HeightMap {
         }
         let rings = (last / width * (1.0 + 1e-12)) as usize;
         let mut sums = vec![[0.0; 3]; rings + 1];
-        let spectrum = HeightSpectrum::of(cells, &field);
-        for wave in spectrum.waves() {
-            let [q1, q2] = wave_numbers(wave.number, lengths);
+        for ([q1, q2], amplitude, number) in waves(&self.grid(), &field) {
             let q = q1.hypot(q2);
             if let Some(sum) = sums.get_mut((q / width).round() as usize) {
-                let power = spectrum.at(wave).norm_sqr();
-                sum.iter_mut().zip([1.0, q, area * power]).for_each(|(s, value)| *s += wave.count * value);
+                let power = amplitude.norm_sqr();
+                sum.iter_mut().zip([1.0, q, area * power]).for_each(|(s, value)| *s += number * value);
             }
         }
         let rings = sums.into_iter().skip(1).filter(|[count, ..]| *count > 0.0);
@@ -306,14 +281,17 @@ mod tests {
     #[test]
     fn random_heights_are_gaussian() {
         // Many short waves: the fourth moment of their sum is the moment of a normal distribution.
-        let statistics = rough(512, 0.3, 5).statistics().unwrap();
+        let map = rough(512, 0.3, 5);
+        let statistics = map.statistics().unwrap();
         assert!(statistics.skewness.abs() < 0.2 && (statistics.kurtosis - 3.0).abs() < 0.3, "{statistics:?}");
-        let distribution = rough(512, 0.3, 5).height_distribution(41).unwrap();
-        let width = distribution[1].0 - distribution[0].0;
-        assert_abs_diff_eq!(distribution.iter().map(|(_, p)| p * width).sum::<f64>(), 1.0, epsilon = 1e-12);
-        let normal = |z: f64| (-0.5 * (z / 3e-3).powi(2)).exp() / (3e-3 * TAU.sqrt());
-        for (z, p) in distribution {
-            assert!((p - normal(z)).abs() < 0.1 * normal(0.0), "{z}: {p} for {}", normal(z));
+        let (low, width) = (-12e-3, 0.6e-3);
+        for bin in 0..40 {
+            let from = low + width * f64::from(bin);
+            let count = map.heights().iter().filter(|z| (from..from + width).contains(*z)).count();
+            let density = count as f64 / map.heights().len() as f64 / width;
+            let normal = |z: f64| (-0.5 * (z / 3e-3).powi(2)).exp() / (3e-3 * TAU.sqrt());
+            let expected = normal(from + 0.5 * width);
+            assert!((density - expected).abs() < 0.1 * normal(0.0), "{from}: {density} for {expected}");
         }
     }
 
@@ -336,11 +314,6 @@ mod tests {
     fn maps_without_statistics_are_refused() {
         let flat = HeightMap::new([3, 3], [1.0, 1.0], vec![0.1; 9]).unwrap();
         assert!(matches!(flat.statistics(), Err(Error::OutOfRange { field: "rms height", .. })));
-        assert!(matches!(flat.height_distribution(3), Err(Error::OutOfRange { field: "range of the heights", .. })));
-        assert!(matches!(flat.height_distribution(0), Err(Error::CountOutOfRange { .. })));
-        let step = HeightMap::new([2, 1], [1.0, 1.0], vec![0.0, 1.0]).unwrap();
-        let distribution = step.height_distribution(usize::MAX);
-        assert!(matches!(distribution, Err(Error::OutOfMemory { .. })), "{distribution:?}");
         let empty = HeightMap::new([2, 1], [1.0, 1.0], vec![f64::NAN, 1.0]).unwrap();
         assert!(empty.power_spectrum().is_err_and(|error| error.code() == "map_incomplete"));
     }

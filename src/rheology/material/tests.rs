@@ -11,7 +11,7 @@ fn compressibility_obeys_the_correspondence_principle() {
     for ratio in [0.0, 0.3, 0.95] {
         let body = GeneralizedMaxwell::prony(glassy, &terms).unwrap();
         let material = Material::relaxing_bulk(body, bulk, ratio).unwrap();
-        let Volume::Bulk(at_once, ..) = material.bodies[0].volume else { panic!("{material}") };
+        let Volume::Bulk(at_once, ..) = material.bodies[0].volume else { panic!("{material:?}") };
         assert!((at_once / bulk - 1.0).abs() < 1e-14);
         let law = material.compressibility(0).unwrap();
         for s in [1e-4, 0.1, 1.0, 30.0, 1e5] {

@@ -4,7 +4,7 @@ use crate::rheology::table::Measurements;
 use crate::rheology::table::data::{Deformation, TableRow};
 use crate::rheology::table::isotherm::Isotherm;
 use crate::rheology::table::shift::{Shift, shift_between};
-use crate::rheology::{CreepSeries, MaterialFunction, ShiftedRheology, Tension, TimeTemperature};
+use crate::rheology::{CreepSeries, MaterialFunction, Tension, TimeTemperature};
 
 /// Isotherms shifted along the axis of time (or frequency) until they form one curve at a reference
 /// temperature, which spans more decades than any isotherm (time–temperature superposition).
@@ -153,7 +153,7 @@ impl MasterCurve {
     }
 
     /// The law of the shift factors themselves, a [table](TimeTemperature::table), with the vertical factors of the
-    /// curve.
+    /// curve: [`TimeTemperature::at`] gives the fitted body at another temperature.
     ///
     /// # Errors
     /// If there is no temperature besides the reference.
@@ -260,23 +260,6 @@ impl MasterCurve {
     /// If the curve cannot be fitted.
     pub fn fit_tension(&self) -> Result<Tension<CreepSeries>> {
         self.fitted(Deformation::Tension).map(Tension)
-    }
-
-    /// The body at another `temperature` \[K\] between those of the isotherms: [`MasterCurve::fit`], shifted by
-    /// [`MasterCurve::shift_table`], in time and in its moduli.
-    ///
-    /// # Errors
-    /// If the curve cannot be fitted, or the temperature is beyond the isotherms.
-    pub fn fit_at(&self, temperature: f64) -> Result<ShiftedRheology<CreepSeries>> {
-        self.shift_table()?.at(self.fit()?, temperature)
-    }
-
-    /// [`MasterCurve::fit_at`] of isotherms in tension.
-    ///
-    /// # Errors
-    /// As [`MasterCurve::fit_at`].
-    pub fn fit_tension_at(&self, temperature: f64) -> Result<Tension<ShiftedRheology<CreepSeries>>> {
-        self.shift_table()?.at(self.fit_tension()?.0, temperature).map(Tension)
     }
 
     fn fitted(&self, deformation: Deformation) -> Result<CreepSeries> {

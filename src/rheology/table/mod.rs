@@ -104,8 +104,8 @@ impl Measurements {
     /// let truth = GeneralizedMaxwell::new(1.0e6, &[(4.0e6, 1.0)])?;
     /// let spectrum = truth.creep_spectrum().unwrap().relaxation();
     /// let omega = (-8..=8).map(|k| 10f64.powf(0.25 * f64::from(k)));
-    /// let table: Vec<(f64, f64, f64)> =
-    ///     omega.map(|omega| (omega, spectrum.storage_modulus(omega), spectrum.loss_modulus(omega))).collect();
+    /// let moduli = omega.map(|omega| (omega, spectrum.complex_modulus(omega)));
+    /// let table: Vec<(f64, f64, f64)> = moduli.map(|(omega, modulus)| (omega, modulus.re, modulus.im)).collect();
     /// let body = Measurements::dynamic(&table)?.fit()?;
     /// assert!((body.creep_compliance(2.0) / truth.creep_compliance(2.0) - 1.0).abs() < 1e-4);
     /// # Ok::<(), viscocontact::Error>(())

@@ -2,7 +2,7 @@ use std::fmt;
 use std::sync::{Arc, Mutex};
 
 use crate::ascending::{Ascending, TimeTable};
-use crate::error::{Error, Refusal, Result, finite, positive, within};
+use crate::error::{Error, Refusal, Result, finite, within};
 use crate::numeric::root;
 use crate::quadrature::GaussLegendre;
 use crate::rheology::TimeTemperature;
@@ -47,7 +47,6 @@ use crate::rounded::{TIME, rounded};
 pub struct TemperatureHistory {
     law: TimeTemperature,
     course: Temperatures,
-    ageing: Option<Ageing>,
     rule: GaussLegendre,
     /// Room for the pieces of a quadrature, kept so that steps allocate none.
     pieces: Arc<Mutex<[Vec<Piece>; 2]>>,
@@ -55,17 +54,6 @@ pub struct TemperatureHistory {
 
 /// Start and end \[s\] of a piece, and the quadrature over it.
 type Piece = (f64, f64, f64);
-
-/// Times grow as a power of the age.
-#[derive(Debug, Clone, Copy)]
-struct Ageing {
-    /// The shift rate μ.
-    rate: f64,
-    /// Age for which the times of the material hold \[s\].
-    reference: f64,
-    /// Age at time 0 \[s\].
-    start: f64,
-}
 
 #[derive(Clone)]
 enum Temperatures {
@@ -100,16 +88,9 @@ pub(crate) fn vertical_factors(what: &str) -> Error {
 }
 
 impl TemperatureHistory {
-    /// A temperature \[K\] that never changes.
-    ///
-    /// # Errors
-    /// As [`TimeTemperature::shift_factor`]; if the law has vertical factors.
-    pub fn constant(law: TimeTemperature, temperature: f64) -> Result<TemperatureHistory> {
-        TemperatureHistory::table(law, &[(0.0, temperature)])
-    }
-
     /// The temperature through a `table` of times \[s\] and temperatures \[K\]: linear in between, constant before the
-    /// first and after the last. Two entries at the same time are a jump. A ramp is a table of two.
+    /// first and after the last. Two entries at the same time are a jump. A ramp is a table of two, and a temperature
+    /// that never changes of one.
     ///
     /// # Errors
     /// If there is no entry, a time is not finite or earlier than the one before, for a temperature as
@@ -140,40 +121,12 @@ impl TemperatureHistory {
             return Err(vertical_factors("a history of the temperature"));
         }
         let pieces = Arc::new(Mutex::new([(); 2].map(|()| Vec::with_capacity(32))));
-        Ok(TemperatureHistory { law, course, ageing: None, rule: GaussLegendre::new(12), pieces })
-    }
-
-    /// With physical ageing: a glass that was quenched an age t_e ago has times that grow as (t_e/t_ref)^μ, so that dξ
-    /// = dt/(a_T (t_e/t_ref)^μ) (L. C. E. Struik, *Physical Aging in Amorphous Polymers and Other Materials*, 1978).
-    /// `rate` is μ, about 1 for many glasses; the times of the material hold for the age `reference` \[s\]; at time 0
-    /// its age is `start` \[s\]. Ageing that a change of temperature erases is not modelled.
-    ///
-    /// ```
-    /// use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
-    ///
-    /// let law = TimeTemperature::arrhenius(300.0e3, 293.15)?;
-    /// let glass = TemperatureHistory::constant(law, 293.15)?.ageing(1.0, 3600.0, 3600.0)?;
-    /// // with μ = 1 a test creeps by the logarithm of the age: t_ref ln(1 + t/t_e)
-    /// assert!((glass.reduced_time(0.0, 36_000.0)? - 3600.0 * 11.0_f64.ln()).abs() < 1e-9);
-    /// # Ok::<(), viscocontact::Error>(())
-    /// ```
-    ///
-    /// # Errors
-    /// If μ is outside \[0, 2\], or an age is not finite and positive.
-    pub fn ageing(self, rate: f64, reference: f64, start: f64) -> Result<TemperatureHistory> {
-        within("shift rate of ageing", rate, (0.0..=2.0).contains(&rate), "in [0, 2]")?;
-        positive("reference age", reference)?;
-        positive("age at the start", start)?;
-        Ok(TemperatureHistory { ageing: Some(Ageing { rate, reference, start }), ..self })
+        Ok(TemperatureHistory { law, course, rule: GaussLegendre::new(12), pieces })
     }
 
     /// dξ/dt.
     fn rate(&self, time: f64) -> Result<f64> {
-        let aged = match self.ageing {
-            Some(Ageing { rate, reference, start }) => (positive("age", start + time)? / reference).powf(rate),
-            None => 1.0,
-        };
-        Ok(1.0 / (self.law.shift_factor(self.at(time))? * aged))
+        Ok(1.0 / self.law.shift_factor(self.at(time))?)
     }
 
     /// The slowest rate at which the reduced time passes until `last`, at 64 temperatures.
@@ -251,16 +204,7 @@ impl TemperatureHistory {
         if let Temperatures::Table(table) = &self.course
             && table.is_constant_after(from)
         {
-            let length = match self.ageing {
-                None => to - from,
-                // ∫ (t_e/t_e0)^(−μ) dt, without cancellation
-                Some(Ageing { rate, start, .. }) => {
-                    let (age, power) = (start + from, 1.0 - rate);
-                    let grown = ((to - from) / age).ln_1p();
-                    age * if power == 0.0 { grown } else { (power * grown).exp_m1() / power }
-                }
-            };
-            return Ok(length * self.rate(from)?);
+            return Ok((to - from) * self.rate(from)?);
         }
         self.halved(from, to)
     }
@@ -327,11 +271,6 @@ impl TemperatureHistory {
         invalid.map_or(Ok(sum), Err)
     }
 
-    /// Shift rate, reference age and age at the start of an ageing body.
-    pub(crate) fn age(&self) -> Option<[f64; 3]> {
-        self.ageing.map(|Ageing { rate, reference, start }| [rate, reference, start])
-    }
-
     /// The times and temperatures of a table, or the corners of a function.
     pub(crate) fn course(&self) -> std::result::Result<&[(f64, f64)], &[f64]> {
         match &self.course {
@@ -345,9 +284,6 @@ impl fmt::Debug for TemperatureHistory {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut debug = f.debug_struct("TemperatureHistory");
         debug.field("law", &self.law);
-        if let Some(ageing) = &self.ageing {
-            debug.field("ageing", ageing);
-        }
         match &self.course {
             Temperatures::Table(table) => debug.field("table", table).finish(),
             Temperatures::Function { corners, .. } => {

@@ -1,6 +1,6 @@
 //! Steady motions, sweeps over patches, and fits that leave the model, each in one way: each is refused, or its messages say why.
 
-use super::silent::{curve, far_from_zero, grid, rubber, table, wlf};
+use super::silent::{far_from_zero, grid, of_curve, rubber, table, wlf};
 use super::{Scene, judge_all};
 use crate::common::{Draws, Temporary, builder_of, builder_on, zener};
 use viscocontact::num_complex::Complex64;
@@ -203,7 +203,7 @@ fn motions_and_fits_inside_are_silent() {
             slid(builder_on(grid(), Material::incompressible(table())), 1e-4, Load::force(0.15)),
         ),
         ("a curve between its isotherms", {
-            let material = curve().and_then(|curve| curve.fit_at(295.0)).map(Material::incompressible);
+            let material = of_curve(295.0).map(Material::incompressible);
             material.and_then(|material| slid(builder_on(grid(), material), 1e-3, Load::approach(40.0e-6)))
         }),
         ("a fit", Ok(fitted(5e-6, 0.2e-6, &ZENER, |_, force| force))),

@@ -42,7 +42,7 @@ fn noisy_tables_of_linear_bodies_are_fitted() {
             0 => Measurements::creep(&x.map(|t| (t, noisy(body.creep_compliance(t)))).collect::<Vec<_>>()),
             1 => Measurements::relaxation(&x.map(|t| (t, noisy(spectrum.modulus(t)))).collect::<Vec<_>>()),
             _ => {
-                let row = |w: f64| (w, noisy(spectrum.storage_modulus(w)), noisy(spectrum.loss_modulus(w)));
+                let row = |w: f64| (w, noisy(spectrum.complex_modulus(w).re), noisy(spectrum.complex_modulus(w).im));
                 Measurements::dynamic(&x.map(row).collect::<Vec<_>>())
             }
         };
@@ -125,7 +125,7 @@ fn shifts_within_their_errors(is_vertical: bool) {
                     .iter()
                     .map(|&w| {
                         let at = w * factors[k] / factors[number - 1];
-                        (w, noisy(spectrum.storage_modulus(at), draw), noisy(spectrum.loss_modulus(at), draw))
+                        (w, noisy(spectrum.complex_modulus(at).re, draw), noisy(spectrum.complex_modulus(at).im, draw))
                     })
                     .collect();
                 if spoiled {
@@ -165,7 +165,7 @@ fn columns_that_disagree_are_told() {
     let isotherm = |temperature: f64, shift: f64, loss: f64| {
         let row = |w: f64| {
             let at = w * 10f64.powf(shift);
-            (w, spectrum.storage_modulus(at), spectrum.loss_modulus(at * loss))
+            (w, spectrum.complex_modulus(at).re, spectrum.complex_modulus(at * loss).im)
         };
         let table: Vec<_> = log_spaced(0.1, 100.0, 6).into_iter().map(row).collect();
         Isotherm::new(temperature, Measurements::dynamic(&table).unwrap()).unwrap()
@@ -196,7 +196,8 @@ fn vertical_shifts_are_found_on_request() {
                 let mut value = |exact: f64| factors[k] * exact * (5e-3 * noise()).exp();
                 let table = if dynamic {
                     let row = |&w: &f64| {
-                        (w, value(spectrum.storage_modulus(w * shift)), value(spectrum.loss_modulus(w * shift)))
+                        let modulus = spectrum.complex_modulus(w * shift);
+                        (w, value(modulus.re), value(modulus.im))
                     };
                     Measurements::dynamic(&x.iter().map(row).collect::<Vec<_>>())
                 } else {

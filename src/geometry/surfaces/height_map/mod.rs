@@ -10,7 +10,6 @@ mod unit;
 mod write;
 
 pub use level::Form;
-pub use resample::{ResampledMap, ResamplingError};
 pub use unit::LengthUnit;
 
 use std::fmt;

@@ -5,25 +5,13 @@ use super::{HeightMap, ROUNDING};
 /// The points along one axis that an interpolated value depends on, with their weights.
 struct Stencil {
     index: [usize; 4],
-    /// The weights, and their derivatives with respect to the index.
-    weights: [[f64; 4]; 2],
+    weights: [f64; 4],
 }
 
 /// Weights of the four points around a position that lies `t` after the second (Keys 1981, a = −1/2).
 fn cubic(t: f64) -> [f64; 4] {
     let (t2, t3) = (t * t, t * t * t);
     [0.5 * (2.0 * t2 - t3 - t), 0.5 * (3.0 * t3 - 5.0 * t2 + 2.0), 0.5 * (4.0 * t2 - 3.0 * t3 + t), 0.5 * (t3 - t2)]
-}
-
-/// Derivatives of the weights of [`cubic`].
-fn cubic_slope(t: f64) -> [f64; 4] {
-    let t2 = t * t;
-    [
-        0.5 * (4.0 * t - 3.0 * t2 - 1.0),
-        0.5 * (9.0 * t2 - 10.0 * t),
-        0.5 * (8.0 * t - 9.0 * t2 + 1.0),
-        0.5 * (3.0 * t2 - 2.0 * t),
-    ]
 }
 
 /// Splits an index into the preceding point and the fraction after it, without the rounding errors of coordinates.
@@ -37,7 +25,7 @@ impl Stencil {
     /// The stencil around the fractional `index` among `n` points.
     fn new(index: f64, n: usize, periodic: bool) -> Stencil {
         let (before, t) = split(index);
-        let weights = [cubic(t), cubic_slope(t)];
+        let weights = cubic(t);
         if periodic {
             let first = before.rem_euclid(n as f64) as usize + n - 1;
             return Stencil { index: [0, 1, 2, 3].map(|k| (first + k) % n), weights };
@@ -46,17 +34,15 @@ impl Stencil {
         let (before, last) = (before as isize, n as isize - 1);
         let window = (before - 1).clamp(0, (last - 3).max(0));
         let index = [0, 1, 2, 3].map(|k| (window + k).min(last) as usize);
-        let mut stencil = Stencil { index, weights: [[0.0; 4]; 2] };
-        for k in 0..4 {
+        let mut stencil = Stencil { index, weights: [0.0; 4] };
+        for (k, weight) in weights.into_iter().enumerate() {
             let node = before - 1 + k as isize;
             let end = node.clamp(0, last);
             let next = if node < 0 { 1.min(last) } else { (last - 1).max(0) };
             let beyond = (node - end).unsigned_abs() as f64;
             for (to, part) in [(end, 1.0 + beyond), (next, -beyond)] {
                 if part != 0.0 {
-                    for (sum, weights) in stencil.weights.iter_mut().zip(&weights) {
-                        sum[(to - window) as usize] += part * weights[k];
-                    }
+                    stencil.weights[(to - window) as usize] += part * weight;
                 }
             }
         }
@@ -94,30 +80,19 @@ impl HeightMap {
     /// is missing.
     pub fn height_at(&self, x1: f64, x2: f64) -> Option<f64> {
         let at = self.indices(x1, x2)?;
-        let height = self.weighted(&self.stencils(at), [0, 0]);
+        let height = self.weighted(&self.stencils(at));
         if height.is_nan() && self.masked { self.linear_of_known(at) } else { Some(height).filter(|z| !z.is_nan()) }
-    }
-
-    /// Slopes ∂z/∂x1 and ∂z/∂x2 of [`HeightMap::height_at`] at the point (x1, x2); `None` outside the map and where one
-    /// of the sixteen points around is missing.
-    pub fn slope_at(&self, x1: f64, x2: f64) -> Option<[f64; 2]> {
-        let stencils = self.stencils(self.indices(x1, x2)?);
-        let slope =
-            [self.weighted(&stencils, [1, 0]) / self.spacing[0], self.weighted(&stencils, [0, 1]) / self.spacing[1]];
-        Some(slope).filter(|slope| slope.iter().all(|s| !s.is_nan()))
     }
 
     fn stencils(&self, at: [f64; 2]) -> [Stencil; 2] {
         [0, 1].map(|axis| Stencil::new(at[axis], self.cells[axis], self.periodic))
     }
 
-    /// Sum of sixteen heights with their weights, or for `derivatives` of 1 along an axis the derivatives of these;
-    /// NaN if a height with a nonzero weight is missing.
-    fn weighted(&self, [rows, columns]: &[Stencil; 2], derivatives: [usize; 2]) -> f64 {
-        let (of_rows, of_columns) = (&rows.weights[derivatives[0]], &columns.weights[derivatives[1]]);
+    /// Sum of sixteen heights with their weights; NaN if a height with a nonzero weight is missing.
+    fn weighted(&self, [rows, columns]: &[Stencil; 2]) -> f64 {
         let mut sum = 0.0;
-        for (i, a) in rows.index.iter().zip(of_rows).filter(|(_, a)| **a != 0.0) {
-            for (j, b) in columns.index.iter().zip(of_columns).filter(|(_, b)| **b != 0.0) {
+        for (i, a) in rows.index.iter().zip(&rows.weights).filter(|(_, a)| **a != 0.0) {
+            for (j, b) in columns.index.iter().zip(&columns.weights).filter(|(_, b)| **b != 0.0) {
                 sum += a * b * self.heights[i * self.cells[1] + j];
             }
         }
@@ -169,25 +144,18 @@ mod tests {
         }
         let plane = map_of([7, 5], |x1, x2| 2.0 * x1 - 3.0 * x2 + 0.25);
         for (x1, x2) in [(-0.5, 0.5), (0.499, -0.123), (0.01, 0.02), (-0.47, 0.3), (0.5, 0.5)] {
-            let (height, slope) = (plane.height_at(x1, x2).unwrap(), plane.slope_at(x1, x2).unwrap());
+            let height = plane.height_at(x1, x2).unwrap();
             assert!((height - (2.0 * x1 - 3.0 * x2 + 0.25)).abs() < 1e-14, "({x1}, {x2}): {height}");
-            assert!((slope[0] - 2.0).abs() < 1e-13 && (slope[1] + 3.0).abs() < 1e-13, "{slope:?}");
         }
         assert_eq!(plane.height_at(0.501, 0.0), None);
         assert_eq!(plane.initial_gap(0.0, -0.501), f64::INFINITY);
     }
 
     #[test]
-    fn parabolas_are_exact_inside_and_slopes_are_derivatives() {
+    fn parabolas_are_exact_inside() {
         let map = map_of([9, 8], |x1, x2| x1 * x1 - 0.5 * x2 * x2 + x1 * x2);
         let (x1, x2) = (0.13, -0.21);
         assert_abs_diff_eq!(map.height_at(x1, x2).unwrap(), x1 * x1 - 0.5 * x2 * x2 + x1 * x2, epsilon = 1e-15);
-        let map = map_of([9, 8], waves).periodic();
-        let (at, step) = ((0.47, -0.49), 1e-6);
-        let slope = map.slope_at(at.0, at.1).unwrap();
-        let height = |d1: f64, d2: f64| map.height_at(at.0 + d1, at.1 + d2).unwrap();
-        assert_abs_diff_eq!(slope[0], (height(step, 0.0) - height(-step, 0.0)) / (2.0 * step), epsilon = 1e-7);
-        assert_abs_diff_eq!(slope[1], (height(0.0, step) - height(0.0, -step)) / (2.0 * step), epsilon = 1e-7);
     }
 
     #[test]

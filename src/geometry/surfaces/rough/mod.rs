@@ -1,13 +1,10 @@
 //! Random rough surfaces.
 
-mod shared;
 mod spec;
 
-pub use shared::SharedRough;
 pub use spec::{Anisotropy, RoughSpec, Roughness};
 
 use std::f64::consts::TAU;
-use std::ops::Range;
 
 use num_complex::Complex64;
 use rand_chacha::ChaCha8Rng;
@@ -17,7 +14,6 @@ use crate::error::{Error, Result, within};
 use crate::geometry::surfaces::height_map::not_finite;
 use crate::geometry::surfaces::height_spectrum::{HeightSpectrum, wave_numbers};
 use crate::geometry::{Geometry, HeightMap, Waves};
-use crate::parallel::{Rows, part};
 use crate::{Grid, memory};
 
 /// A self-affine random surface: a sum of waves with Gaussian random amplitudes and the spectrum of a [`RoughSpec`].
@@ -52,9 +48,7 @@ impl Rough {
     /// If a value of the spec is out of range, the shortest wavelength is below two cells, or no wave of the spectrum
     /// fits the lengths. If there is no memory for waves and heights, 16 bytes per cell.
     pub fn new(grid: &Grid, spec: RoughSpec) -> Result<Rough> {
-        let bytes = HeightSpectrum::bytes(grid.cells()) + 8 * grid.len() as u128;
-        let heights = heights(grid, &spec, &Rows::all(grid.cells()), bytes)?;
-        let map = HeightMap::on(&Grid::of_spacing(grid.cells(), grid.spacing()), heights);
+        let map = HeightMap::on(&Grid::of_spacing(grid.cells(), grid.spacing()), heights(grid, &spec)?);
         Ok(Rough { spec, map: map.periodic() })
     }
 
@@ -101,27 +95,22 @@ impl Geometry for Rough {
     }
 }
 
-/// The heights of the local rows, for which `bytes` are needed.
-fn heights(grid: &Grid, spec: &RoughSpec, rows: &Rows, bytes: u128) -> Result<Vec<f64>> {
-    let [_, n2] = grid.cells();
-    let columns = |rank: usize| part(n2 / 2 + 1, rank, rows.ranks());
-    rows.agree(spec.validate_on(grid).and_then(|()| memory::check("a rough surface", bytes)))?;
-    let (mut spectrum, sums) = waves(grid, spec, columns(rows.rank()));
-    let count = |rank: usize| 2 * columns(rank).len();
-    spectrum.scale(rows.gather(sums.into_iter().flatten(), count, |all| scale(spec, all.as_chunks::<2>().0))?);
-    let heights = spectrum.local_heights(rows);
-    let invalid = heights.iter().position(|z| !z.is_finite());
-    let own = invalid.map_or([f64::INFINITY, 0.0], |k| [(rows.own().start * n2 + k) as f64, heights[k]]);
-    let [entry, value] = rows.join(own, |a, b| if b[0] < a[0] { b } else { a });
-    if entry.is_finite() {
-        return Err(not_finite(entry as usize, value));
+/// The heights of a whole period.
+fn heights(grid: &Grid, spec: &RoughSpec) -> Result<Vec<f64>> {
+    spec.validate_on(grid)?;
+    memory::check("a rough surface", HeightSpectrum::bytes(grid.cells()) + 8 * grid.len() as u128)?;
+    let (mut spectrum, sums) = waves(grid, spec);
+    spectrum.scale(scale(spec, &sums)?);
+    let heights = spectrum.heights();
+    match heights.iter().position(|z| !z.is_finite()) {
+        Some(entry) => Err(not_finite(entry, heights[entry])),
+        None => Ok(heights),
     }
-    Ok(heights)
 }
 
-/// Random waves of the k2 in `columns` before they are scaled to the specified roughness, and the mean squares of
-/// height and slope of the waves of each k2.
-fn waves(grid: &Grid, spec: &RoughSpec, columns: Range<usize>) -> (HeightSpectrum, Vec<[f64; 2]>) {
+/// Random waves before they are scaled to the specified roughness, and the mean squares of height and slope of the
+/// waves of each k2.
+fn waves(grid: &Grid, spec: &RoughSpec) -> (HeightSpectrum, Vec<[f64; 2]>) {
     let (cells, lengths) = (grid.cells(), grid.lengths());
     let line = cells[0] == 1 || cells[1] == 1;
     // Highest wave along each axis: within the spectrum and below the Nyquist wave of the grid.
@@ -131,14 +120,13 @@ fn waves(grid: &Grid, spec: &RoughSpec, columns: Range<usize>) -> (HeightSpectru
     });
     let origin = grid.center(0, 0);
     let mut random = ChaCha8Rng::seed_from_u64(spec.seed);
-    let mut sums = vec![[0.0; 2]; columns.len()];
-    let first = columns.start as i64;
-    let mut spectrum = HeightSpectrum::zero(cells, columns);
+    let mut sums = vec![[0.0; 2]; cells[1] / 2 + 1];
+    let mut spectrum = HeightSpectrum::zero(cells);
     for k1 in -highest[0]..=highest[0] {
         // The position in the random stream depends on the wave alone, so that it is the same on every mesh.
         random.set_stream(if k1 < 0 { -2 * k1 - 1 } else { 2 * k1 } as u64);
-        random.set_word_pos(WORDS_OF_A_WAVE * first as u128);
-        for (k2, sums) in (first..=highest[1]).zip(&mut sums) {
+        random.set_word_pos(0);
+        for (k2, sums) in (0..=highest[1]).zip(&mut sums) {
             let amplitude = gaussian(&mut random);
             if k2 == 0 && k1 <= 0 {
                 continue; // conjugates of waves with k1 > 0, and the mean
@@ -169,9 +157,6 @@ fn scale(spec: &RoughSpec, sums: &[[f64; 2]]) -> Result<f64> {
         Roughness::RmsSlope(wanted) => wanted / slope.sqrt(),
     })
 }
-
-/// Words of 32 bits that [`gaussian`] takes from the random stream.
-const WORDS_OF_A_WAVE: u128 = 4;
 
 /// A complex number with independent standard normal parts (Box and Muller 1958).
 fn gaussian(random: &mut ChaCha8Rng) -> Complex64 {
