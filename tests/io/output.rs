@@ -1,5 +1,6 @@
 //! Files of results are read back bit by bit, by readers that share no code with the writers.
 
+use crate::common::fields::gap;
 use crate::common::{Temporary, contact_of, maxwell, sphere_on};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -51,11 +52,7 @@ fn values(contact: &ViscoelasticContact, field: Field) -> Vec<f64> {
         // nothing attracts here
         Field::Pressure | Field::Traction => contact.pressure().to_vec(),
         Field::Displacement => contact.fields().displacement().to_vec(),
-        _ => {
-            let mut gap = vec![0.0; contact.grid().len()];
-            contact.fields().gap_into(&mut gap).unwrap();
-            gap
-        }
+        _ => gap(contact.fields()),
     }
 }
 

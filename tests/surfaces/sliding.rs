@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use crate::common::builder_of;
+use crate::common::fields::gap;
 use crate::common::refused::{not_covered, refused};
 use viscocontact::adhesion::ExponentialAttraction;
 use viscocontact::contact::Builder;
@@ -108,11 +109,6 @@ fn a_steady_state_is_read_like_a_contact() {
     sliding.at([0.0; 2], load).unwrap();
     let mut still = builder(Material::incompressible(Elastic::new(1e5).unwrap())).build().unwrap();
     still.step(0.0, load).unwrap();
-    let gap = |contact: Fields<'_>| {
-        let mut gap = vec![0.0; grid.len()];
-        contact.gap_into(&mut gap).unwrap();
-        gap
-    };
     let readings = |contact: Fields<'_>| -> Vec<(&'static str, Vec<f64>)> {
         let (patches, profile) = (contact.patches().unwrap(), contact.profile(Axis::X2, 0.1).unwrap());
         let stress = contact.stress().unwrap().at(&[[0.0, 0.0, 0.1], [0.1, 0.2, 0.3]]).unwrap();
