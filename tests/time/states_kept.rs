@@ -185,20 +185,17 @@ fn states_in_files_are_the_states() {
     assert_eq!(states_from_bytes(b"other").unwrap_err().kind(), ErrorKind::File);
 }
 
-/// Tables and charts take contacts on elastic states, with what acts along the surface; what these do not have is empty.
+/// Tables take contacts on elastic states, with what acts along the surface; what these do not have is empty.
 #[test]
-fn histories_of_states_are_written_and_drawn() {
-    use viscocontact::plot::{History, HistoryColumn};
-
+fn histories_of_states_are_written() {
     let folder = Temporary::folder("states-history");
-    let (path, mut contact, mut history) = (folder.join("history.csv"), kept::contact(0.4), History::new());
+    let (path, mut contact) = (folder.join("history.csv"), kept::contact(0.4));
     let mut table =
         CsvHistory::create(&path, &Metadata::new("rubbed"), &contact, &["level [m2]"], Earlier::Refuse).unwrap();
     for _ in 0..3 {
         let report = contact.step_sheared(0.1, Load::force(1.0), Load::force(0.3)).unwrap();
         assert_eq!(report.dt, 0.1);
         table.record(&contact, &report, &[contact.level()]).unwrap();
-        history.record(&contact);
     }
     let smooth = kept::smooth();
     let report = smooth.report(0.0, Load::force(0.0));
@@ -224,9 +221,6 @@ fn histories_of_states_are_written_and_drawn() {
     }
     assert!(value(1, "displacement along [m]") < value(3, "displacement along [m]"));
     assert_eq!(field(3, "max pressure [Pa]"), "");
-    assert_eq!(history.column(HistoryColumn::ContactArea).last(), Some(&contact.contact_area()));
-    history.chart(HistoryColumn::ContactArea).unwrap();
-    assert!(matches!(history.chart(HistoryColumn::MaxPressure), Err(Error::WrongLength { .. })));
 }
 
 /// Between the states of a table whose stiffnesses contradict its depths, the depth rises nevertheless.
