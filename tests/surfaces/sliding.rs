@@ -9,8 +9,10 @@ use std::time::Duration;
 use crate::common::builder_of;
 use crate::common::fields::gap;
 use crate::common::refused::{not_covered, refused};
+use crate::io::numbers_of;
 use viscocontact::adhesion::ExponentialAttraction;
 use viscocontact::contact::Builder;
+use viscocontact::output::Format;
 use viscocontact::prelude::*;
 use viscocontact::rheology::TimeTemperature;
 use viscocontact::sliding::SlidingSweep;
@@ -89,15 +91,14 @@ fn a_steady_state_is_read_like_a_contact() {
     let readings = |contact: Fields<'_>| -> Vec<(&'static str, Vec<f64>)> {
         let (patches, profile) = (contact.patches().unwrap(), contact.profile(Axis::X2, 0.1).unwrap());
         let stress = contact.stress().unwrap().at(&[[0.0, 0.0, 0.1], [0.1, 0.2, 0.3]]).unwrap();
-        let file = crate::common::Temporary::file("steady_gap.npy");
-        viscocontact::output::write_field_npy(&*file, contact, viscocontact::output::Field::Gap).unwrap();
-        let bytes = std::fs::read(&*file).unwrap();
-        let numbers = bytes[bytes.len() - 8 * grid.len()..].chunks(8);
+        let (folder, metadata) = (crate::common::Temporary::folder("steady-gap"), Metadata::new("steady"));
+        let series = FrameSeries::create(&*folder, Format::Npz, &metadata, contact, &[Field::Gap], Earlier::Refuse);
+        let file = series.unwrap().record(contact).unwrap();
         vec![
             ("pressure", contact.pressure().to_vec()),
             ("displacement", contact.displacement().to_vec()),
             ("gap", gap(contact)),
-            ("gap of a file", numbers.map(|own| f64::from_le_bytes(own.try_into().unwrap())).collect()),
+            ("gap of a file", numbers_of(&file, "gap")),
             ("approach", vec![contact.approach()]),
             ("tilt", contact.tilt().to_vec()),
             ("force", vec![contact.force()]),

@@ -12,6 +12,7 @@ use crate::common::random_histories::{Control, FromSmallLoad};
 use crate::common::{
     Draws, Features, RADIUS, Ratios, Scene, Temporary, builder_of, figures, from_environment, maxwell, sphere_on,
 };
+use crate::io::numbers_of;
 
 fn ball() -> ViscoelasticContact {
     sphere_on(Grid::square(32, 4.0e-3).unwrap(), maxwell(), Settings::default())
@@ -498,13 +499,6 @@ fn fields_of_contacts_that_shrink_are_found_by_graded_steps() {
         errors.count() >= 18 && 20 * beyond <= errors.count() && errors.greatest() < 6.0 && 10 * low <= told.count(),
         "{beyond} {low}"
     );
-}
-
-/// The numbers of a field in an archive of NumPy.
-fn numbers_of(path: &std::path::Path, name: &str) -> Vec<f64> {
-    let (mut archive, mut bytes) = (zip::ZipArchive::new(std::fs::File::open(path).unwrap()).unwrap(), Vec::new());
-    std::io::Read::read_to_end(&mut archive.by_name(&format!("{name}.npy")).unwrap(), &mut bytes).unwrap();
-    npyz::NpyFile::new(&bytes[..]).unwrap().into_vec().unwrap()
 }
 
 /// States within steps, frames and maps of random scenes have the field that was asked for, bitwise where it is written.
