@@ -35,8 +35,8 @@ fn check(law: &'static str, quantity: &'static str, gap: f64, [found, expected]:
     if holds { Ok(()) } else { Err(Violation { law, quantity, at: Location::Gap(gap), found, expected }) }
 }
 
-/// Every law: work of separation, range and maximum traction are finite and positive, and fit each other; the traction is
-/// never negative, and never grows with the gap; the energy is its integral from the gap to infinity.
+/// Every law: work of separation, range and maximum traction are finite and positive, and fit each other; the traction
+/// is never negative, and never grows with the gap; the energy is its integral from the gap to infinity.
 ///
 /// # Errors
 /// The first violation.

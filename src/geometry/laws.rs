@@ -1,5 +1,5 @@
-//! The laws that every [`Geometry`] must obey, for tests of your own geometries. [`all`] checks them on a grid, and reports
-//! which law is violated, on which cell, with the values there.
+//! The laws that every [`Geometry`] must obey, for tests of your own geometries. [`all`] checks them on a grid, and
+//! reports which law is violated, on which cell, with the values there.
 //!
 //! ```
 //! use viscocontact::Grid;
@@ -38,9 +38,9 @@ const JUMP_DISPLACEMENT: f64 = 1e-9;
 /// Shifts by whole cells to test.
 const SHIFTS: [[i64; 2]; 5] = [[1, 0], [0, 1], [-2, 1], [3, 2], [-1, -4]];
 
-/// Every law, on `grid`: gaps are numbers or +∞, finite somewhere, and the same when they are asked for again; a field is
-/// the gap at the cell centres, the same shifted by zero, and shifted by whole cells that of the cells it came from.
-/// Check a geometry that interpolates between points on its own grid.
+/// Every law, on `grid`: gaps are numbers or +∞, finite somewhere, and the same when they are asked for again; a field
+/// is the gap at the cell centres, the same shifted by zero, and shifted by whole cells that of the cells it came
+/// from. Check a geometry that interpolates between points on its own grid.
 ///
 /// # Errors
 /// The first violation.

@@ -1,5 +1,5 @@
-//! The laws that every [`LoadHistory`] obeys, to test implementations of the trait. [`all`] checks them at given times and
-//! at the breakpoints between, and reports which law is violated, where and by how much.
+//! The laws that every [`LoadHistory`] obeys, to test implementations of the trait. [`all`] checks them at given times
+//! and at the breakpoints between, and reports which law is violated, where and by how much.
 //!
 //! ```
 //! use viscocontact::load::{Load, LoadHistory, laws};
@@ -38,10 +38,10 @@ pub fn even_times(first: f64, last: f64, count: usize) -> Vec<f64> {
 const IS_A_LOAD: &str = "every load is one that a step accepts";
 const JUMPS: &str = "jumps lie on breakpoints";
 
-/// Every law, at two or more ascending `times` \[s\]: breakpoints increase; loads are those that a step accepts, and the
-/// same when they are asked for again; [`LoadHistory::at`] is the limit from later times, [`LoadHistory::before`] that
-/// from earlier ones; and between breakpoints there is no jump, no corner, and no load of another kind. Forces that pull,
-/// which only surfaces that attract each other allow, break a law.
+/// Every law, at two or more ascending `times` \[s\]: breakpoints increase; loads are those that a step accepts, and
+/// the same when they are asked for again; [`LoadHistory::at`] is the limit from later times, [`LoadHistory::before`]
+/// that from earlier ones; and between breakpoints there is no jump, no corner, and no load of another kind. Forces
+/// that pull, which only surfaces that attract each other allow, break a law.
 ///
 /// # Errors
 /// The first violation; or if the times are fewer than two, or not ascending.

@@ -1,5 +1,5 @@
-//! The laws that every [`Rheology`] obeys, to test implementations of the trait. [`all`] checks them at given times, and
-//! reports which law is violated, where and by how much.
+//! The laws that every [`Rheology`] obeys, to test implementations of the trait. [`all`] checks them at given times,
+//! and reports which law is violated, where and by how much.
 //!
 //! ```
 //! use viscocontact::rheology::{Rheology, laws};
@@ -34,9 +34,9 @@ pub fn log_times(first: f64, last: f64) -> Vec<f64> {
     (0..=count).map(|k| 10_f64.powf(from + decades * (k as f64 / count as f64))).collect()
 }
 
-/// Every law, at ascending `times` > 0 \[s\], as far as J is known ([`Rheology::known_until`]): J is finite, not negative,
-/// positive after t = 0, and never decreases; its rate never increases, as for every body of springs and dashpots; it
-/// starts at J(0), and the exact series, if there is one, equals it.
+/// Every law, at ascending `times` > 0 \[s\], as far as J is known ([`Rheology::known_until`]): J is finite, not
+/// negative, positive after t = 0, and never decreases; its rate never increases, as for every body of springs and
+/// dashpots; it starts at J(0), and the exact series, if there is one, equals it.
 ///
 /// # Errors
 /// The first violation; or if there are no times, or they are not positive and ascending.

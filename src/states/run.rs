@@ -13,8 +13,8 @@ use crate::run::{Contact, Stepping};
 use crate::states::contact::StatesContact;
 use crate::states::control::OnLevels;
 
-/// Adaptive steps are taken whole and in two halves, and the halves are kept. The error of the step is the difference of
-/// both, in depth and force and in what the surfaces can ever add to them.
+/// Adaptive steps are taken whole and in two halves, and the halves are kept. The error of the step is the difference
+/// of both, in depth and force and in what the surfaces can ever add to them.
 impl Contact for StatesContact {
     fn step_to(&mut self, time: f64, load: Load) -> Result<StepReport> {
         StatesContact::step_to(self, time, time - self.time(), load)
