@@ -55,13 +55,9 @@ fn a_file_that_one_rank_cannot_write_is_an_error_on_all() {
         });
         let failed: Vec<_> = failed.collect();
         assert_eq!(failed.iter().map(|(rank, _)| *rank).collect::<Vec<_>>(), [0, 1, 2, 0, 0]);
-        for ((_, message), expected) in failed.iter().zip([
-            "exists",
-            "column name",
-            "additional columns",
-            "does not exist",
-            "does not exist",
-        ]) {
+        for ((_, message), expected) in
+            failed.iter().zip(["exists", "column name", "additional columns", "does not exist", "does not exist"])
+        {
             assert!(message.contains(expected), "{message}");
         }
     }

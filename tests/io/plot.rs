@@ -8,9 +8,7 @@ use std::fs;
 use viscocontact::ErrorKind;
 use viscocontact::observe::Stress;
 use viscocontact::output::Field;
-use viscocontact::plot::{
-    Animation, COLORS, Chart, ColorScale, Legend, Map, Picture, Quantity, Scale, Style, measure,
-};
+use viscocontact::plot::{Animation, COLORS, Chart, ColorScale, Legend, Map, Picture, Quantity, Scale, Style, measure};
 use viscocontact::prelude::*;
 
 /// A ball on a Maxwell body under force; on 32 × 24 cells, so that axes are not mixed up.
