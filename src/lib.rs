@@ -45,7 +45,7 @@
 //! | to | use |
 //! |---|---|
 //! | drive every step | [`ViscoelasticContact::step`] |
-//! | follow a load history, in fixed or adaptive steps | [`ViscoelasticContact::follow`] |
+//! | follow a load history, in fixed or adaptive steps | [`run::Contact::follow`] |
 //! | load elastic bodies, without time | [`elastic::ElasticContact`] |
 //! | read pressure, gap, patches, profiles | [`fields::Fields`] |
 //! | reach a required accuracy, and measure it | [`study::Study`] |

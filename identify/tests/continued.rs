@@ -3,7 +3,7 @@
 use viscocontact::states::ElasticStates;
 use viscocontact_identify::{Decade, Experiment, Fit, Identification, Model, Nuisance, Protocol};
 
-use crate::random::{from_environment, generator, logarithmic, noisy, normal, uniform};
+use crate::random::{from_environment, generator, logarithmic, named, noisy, normal, uniform};
 
 /// Decades beyond the curve.
 const BEYOND: [i32; 3] = [1, 2, 4];
@@ -43,7 +43,7 @@ fn fitted(law: &str, seed: u64) -> (Fit, Vec<f64>, f64) {
     let (model, values) = body(law, length, rng);
     let noise = logarithmic(rng, [1e-3, 3e-2]);
     let names = model.parameters();
-    let named: Vec<(&str, f64)> = names.iter().map(String::as_str).zip(values.iter().copied()).collect();
+    let named = named(&names, &values);
     let curve = noisy(&Identification::new(model), experiment, &named, |greatest| noise * greatest * normal(rng));
     (Identification::new(model).contact_point(Nuisance::Fitted).fit(&[curve]).unwrap(), values, length)
 }

@@ -5,7 +5,7 @@ use rand_chacha::rand_core::Rng;
 use viscocontact::states::ElasticStates;
 use viscocontact_identify::{Curve, Experiment, Fit, Identification, Model, Noise, Nuisance, Protocol};
 
-use crate::random::{self, correlated, from_environment, generator, normal};
+use crate::random::{self, correlated, from_environment, generator, named, normal};
 
 pub const ZENER: [(&str, f64); 3] = [("E0", 1.0), ("Einf", 0.25), ("tau", 1.0)];
 
@@ -148,7 +148,7 @@ fn searches_take_little_work() {
             let sphere = ElasticStates::sphere(5e-6).unwrap();
             let experiment = Experiment::new(Protocol::new(times, drive).unwrap(), sphere).with_spring(0.05).unwrap();
             let names = model.parameters();
-            let named: Vec<(&str, f64)> = names.iter().map(String::as_str).zip(values.iter().copied()).collect();
+            let named = named(&names, values);
             let of = Identification::new(model);
             let curve = random::noisy(&of, experiment, &named, |greatest| 0.01 * greatest * normal(rng));
             let fit = of.contact_point(Nuisance::Fitted).fit(&[curve]).unwrap();

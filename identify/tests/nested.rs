@@ -5,7 +5,7 @@ use std::ops::Range;
 use viscocontact::states::ElasticStates;
 use viscocontact_identify::{Curve, Experiment, Fit, FitWarning, Identification, Model, Nuisance, Protocol};
 
-use crate::random::{choice, from_environment, generator, logarithmic, noisy, normal, uniform};
+use crate::random::{choice, from_environment, generator, logarithmic, named, noisy, normal, uniform};
 
 /// Seeds of the curves: `NESTED_CURVES` of them from `NESTED_SEED` on, or fewer.
 fn seeds() -> Range<u64> {
@@ -49,7 +49,7 @@ fn case(seed: u64) -> Case {
         experiment = experiment.with_spring(logarithmic(rng, [5e-3, 5e-2])).unwrap();
     }
     let names = truth.parameters();
-    let named: Vec<(&str, f64)> = names.iter().map(String::as_str).zip(values.iter().copied()).collect();
+    let named = named(&names, &values);
     let curve = noisy(&Identification::new(truth), experiment, &named, |greatest| noise * greatest * normal(rng));
     let text =
         format!("seed {seed}: {truth:?} {values:?}, {parts}, {count} points, spring {has_spring}, noise {noise:.3}");

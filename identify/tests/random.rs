@@ -15,6 +15,11 @@ pub fn generator(seed: u64) -> ChaCha8Rng {
     ChaCha8Rng::seed_from_u64(seed)
 }
 
+/// The values of parameters beside their names.
+pub fn named<'a>(names: &'a [String], values: &[f64]) -> Vec<(&'a str, f64)> {
+    names.iter().map(String::as_str).zip(values.iter().copied()).collect()
+}
+
 /// The curve of a body, with noise of each sample by the greatest force.
 pub fn noisy(
     of: &Identification,

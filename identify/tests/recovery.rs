@@ -5,7 +5,7 @@ use viscocontact::load::{Load, LoadHistory};
 use viscocontact::states::ElasticStates;
 use viscocontact_identify::{Curve, Error, Experiment, Identification, Law, Model, Nuisance, Protocol};
 
-use crate::random::{exact, from_environment, generator, normal};
+use crate::random::{exact, from_environment, generator, named, normal};
 use crate::scenes::scene;
 
 fn scenes() -> u64 {
@@ -152,7 +152,7 @@ fn laws_of_other_kinds_are_found() {
     let mut compared = 0;
     for (model, truth) in cases {
         let (fitting, names) = (Identification::new(model), model.parameters());
-        let named: Vec<(&str, f64)> = names.iter().map(String::as_str).zip(truth.iter().copied()).collect();
+        let named = named(&names, truth);
         let [first, soon] = [0.0, 1e-9].map(|t| model.modulus(truth, t).unwrap());
         assert!(first.is_finite() && first >= soon && soon > 0.0, "{model}: {first} {soon}");
         if let Model::Stretched | Model::FractionalZener | Model::Custom(_) = model {

@@ -35,7 +35,8 @@ fn check(law: &'static str, quantity: &'static str, gap: f64, [found, expected]:
     if holds { Ok(()) } else { Err(Violation { law, quantity, at: Location::Gap(gap), found, expected }) }
 }
 
-/// Every law.
+/// Every law: work of separation, range and maximum traction are finite and positive, and fit each other; the traction
+/// is never negative, and never grows with the gap; the energy is its integral from the gap to infinity.
 ///
 /// # Errors
 /// The first violation.
@@ -53,10 +54,7 @@ pub(crate) fn usable(attraction: &dyn Attraction) -> Verdict {
 }
 
 /// Work of separation, range and maximum traction are finite and positive, and fit each other.
-///
-/// # Errors
-/// The first violation.
-pub fn scales_are_positive(attraction: &dyn Attraction) -> Verdict {
+fn scales_are_positive(attraction: &dyn Attraction) -> Verdict {
     let law = "work, range and maximum traction are finite and positive";
     let (work, range, greatest) = (attraction.work(), attraction.range(), attraction.traction(0.0));
     for (quantity, value) in [("work of separation", work), ("range", range), ("traction", greatest)] {
@@ -70,10 +68,7 @@ pub fn scales_are_positive(attraction: &dyn Attraction) -> Verdict {
 }
 
 /// The traction is never negative, and never grows with the gap.
-///
-/// # Errors
-/// The first violation.
-pub fn attracts_less_with_the_gap(attraction: &dyn Attraction) -> Verdict {
+fn attracts_less_with_the_gap(attraction: &dyn Attraction) -> Verdict {
     let mut before = f64::INFINITY;
     for gap in gaps(attraction) {
         let traction = attraction.traction(gap);
@@ -86,10 +81,7 @@ pub fn attracts_less_with_the_gap(attraction: &dyn Attraction) -> Verdict {
 
 /// The energy is the integral of the traction from the gap to infinity: its differences are integrals, and it
 /// vanishes far away.
-///
-/// # Errors
-/// The first violation.
-pub fn energy_is_the_integral(attraction: &dyn Attraction) -> Verdict {
+fn energy_is_the_integral(attraction: &dyn Attraction) -> Verdict {
     energy_is_within(1e-7, attraction)
 }
 

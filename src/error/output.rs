@@ -45,11 +45,6 @@ impl OutputError {
     pub fn kind(&self) -> io::ErrorKind {
         self.cause.kind()
     }
-
-    /// The cause.
-    pub fn io_error(&self) -> &io::Error {
-        &self.cause
-    }
 }
 
 impl fmt::Display for OutputError {

@@ -109,7 +109,8 @@ mod tests {
             Err(io::Error::other("the disk is full"))
         });
         let Err(Error::Output(error)) = error else { panic!("{error:?}") };
-        assert_eq!((error.path(), error.io_error().to_string()), (&*path, "the disk is full".into()));
+        let cause = std::error::Error::source(&error).unwrap();
+        assert_eq!((error.path(), cause.to_string()), (&*path, "the disk is full".into()));
         assert_eq!(fs::read(&path).unwrap(), b"old");
         assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
         replace(&path, |out| out.write_all(b"new")).unwrap();

@@ -1,7 +1,5 @@
-//! The laws that every [`Geometry`] must obey, one function per law, for tests of your own geometries.
-//!
-//! Each takes the geometry and a grid, and reports the cell where the law is violated, with the values there. [`all`]
-//! checks every law.
+//! The laws that every [`Geometry`] must obey, for tests of your own geometries. [`all`] checks them on a grid, and
+//! reports which law is violated, on which cell, with the values there.
 //!
 //! ```
 //! use viscocontact::Grid;
@@ -40,7 +38,9 @@ const JUMP_DISPLACEMENT: f64 = 1e-9;
 /// Shifts by whole cells to test.
 const SHIFTS: [[i64; 2]; 5] = [[1, 0], [0, 1], [-2, 1], [3, 2], [-1, -4]];
 
-/// Every law, on `grid`. Check a geometry that interpolates between points on its own grid.
+/// Every law, on `grid`: gaps are numbers or +∞, finite somewhere, and the same when they are asked for again; a field
+/// is the gap at the cell centres, the same shifted by zero, and shifted by whole cells that of the cells it came
+/// from. Check a geometry that interpolates between points on its own grid.
 ///
 /// # Errors
 /// The first violation.
@@ -112,10 +112,7 @@ fn mismatch(geometry: &dyn Geometry, grid: &Grid, point: [f64; 2], found: f64, w
 }
 
 /// The gap is neither NaN nor −∞, wherever the shape is shifted to.
-///
-/// # Errors
-/// The first violation.
-pub fn is_a_gap(geometry: &dyn Geometry, grid: &Grid) -> Verdict {
+fn is_a_gap(geometry: &dyn Geometry, grid: &Grid) -> Verdict {
     let bad = |_, _, found: f64| (found.is_nan() || found == f64::NEG_INFINITY).then_some(f64::INFINITY);
     let law = "a gap is a number or +∞";
     check(law, grid, &filled(geometry, grid, 0.0), bad)?;
@@ -130,20 +127,14 @@ pub fn is_a_gap(geometry: &dyn Geometry, grid: &Grid) -> Verdict {
 }
 
 /// There is something to touch: the gap of at least one cell is finite. Otherwise a contact cannot be built.
-///
-/// # Errors
-/// If no gap is finite, for the first cell.
-pub fn has_something_to_touch(geometry: &dyn Geometry, grid: &Grid) -> Verdict {
+fn has_something_to_touch(geometry: &dyn Geometry, grid: &Grid) -> Verdict {
     let gap = filled(geometry, grid, 0.0);
     let nothing = !gap.iter().any(|h| h.is_finite());
     check("there is something to touch", grid, &gap, |_, _, _| nothing.then_some(0.0))
 }
 
 /// Repeated evaluations give bitwise equal values on every cell, independent of the previous content of the field.
-///
-/// # Errors
-/// The first violation.
-pub fn repeats_itself(geometry: &dyn Geometry, grid: &Grid) -> Verdict {
+fn repeats_itself(geometry: &dyn Geometry, grid: &Grid) -> Verdict {
     let law = "repeated evaluations give the same gap";
     let by = grid.lengths().map(|length| 0.37 * length);
     let (first, first_shifted) = (filled(geometry, grid, 0.0), shifted(geometry, grid, by, 0.0));
@@ -155,10 +146,7 @@ pub fn repeats_itself(geometry: &dyn Geometry, grid: &Grid) -> Verdict {
 }
 
 /// [`Geometry::fill_gap`] writes [`Geometry::initial_gap`] at the cell centres.
-///
-/// # Errors
-/// The first cell where they differ by more than 1e-10 of the maximum gap.
-pub fn field_matches_points(geometry: &dyn Geometry, grid: &Grid) -> Verdict {
+fn field_matches_points(geometry: &dyn Geometry, grid: &Grid) -> Verdict {
     let gap = filled(geometry, grid, 0.0);
     let within = ROUNDING * greatest(&gap);
     check("a field is the gap at the cell centres", grid, &gap, |_, center, found| {
@@ -167,10 +155,7 @@ pub fn field_matches_points(geometry: &dyn Geometry, grid: &Grid) -> Verdict {
 }
 
 /// [`Geometry::fill_gap_at`] the origin is [`Geometry::fill_gap`].
-///
-/// # Errors
-/// The first cell where they differ by more than 1e-10 of the maximum gap.
-pub fn zero_shift_changes_nothing(geometry: &dyn Geometry, grid: &Grid) -> Verdict {
+fn zero_shift_changes_nothing(geometry: &dyn Geometry, grid: &Grid) -> Verdict {
     let gap = filled(geometry, grid, 0.0);
     let within = ROUNDING * greatest(&gap);
     check("a shift by zero changes nothing", grid, &shifted(geometry, grid, [0.0; 2], 0.0), |k, _, found| {
@@ -179,10 +164,7 @@ pub fn zero_shift_changes_nothing(geometry: &dyn Geometry, grid: &Grid) -> Verdi
 }
 
 /// Shifted by whole cells, each cell has the gap of the cell it came from, if that is on the grid.
-///
-/// # Errors
-/// The first cell where they differ by more than 1e-10 of the maximum gap.
-pub fn shifts_by_whole_cells(geometry: &dyn Geometry, grid: &Grid) -> Verdict {
+fn shifts_by_whole_cells(geometry: &dyn Geometry, grid: &Grid) -> Verdict {
     let (gap, [n1, n2]) = (filled(geometry, grid, 0.0), grid.cells());
     let within = ROUNDING * greatest(&gap);
     for shift in SHIFTS {

@@ -1,7 +1,5 @@
-//! The laws that every [`LoadHistory`] obeys: one function per law, to test implementations of the trait.
-//!
-//! Each takes the history and two or more ascending times \[s\] of the check, and reports where the law is violated and
-//! by how much; breakpoints between the times are checked as well. [`all`] checks every law.
+//! The laws that every [`LoadHistory`] obeys, to test implementations of the trait. [`all`] checks them at given times
+//! and at the breakpoints between, and reports which law is violated, where and by how much.
 //!
 //! ```
 //! use viscocontact::load::{Load, LoadHistory, laws};
@@ -40,7 +38,10 @@ pub fn even_times(first: f64, last: f64, count: usize) -> Vec<f64> {
 const IS_A_LOAD: &str = "every load is one that a step accepts";
 const JUMPS: &str = "jumps lie on breakpoints";
 
-/// Every law, at ascending `times` \[s\].
+/// Every law, at two or more ascending `times` \[s\]: breakpoints increase; loads are those that a step accepts, and
+/// the same when they are asked for again; [`LoadHistory::at`] is the limit from later times, [`LoadHistory::before`]
+/// that from earlier ones; and between breakpoints there is no jump, no corner, and no load of another kind. Forces
+/// that pull, which only surfaces that attract each other allow, break a law.
 ///
 /// # Errors
 /// The first violation; or if the times are fewer than two, or not ascending.
@@ -91,10 +92,7 @@ fn check_load(law: &'static str, t: f64, found: &Load, expected: &Load, within: 
 }
 
 /// Breakpoints are finite and later than the argument; the next one is the same for every argument before it.
-///
-/// # Errors
-/// The first violation.
-pub fn breakpoints_increase(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
+fn breakpoints_increase(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
     let last = times.last().copied().unwrap_or(0.0);
     for (k, &t) in times.iter().enumerate() {
         let mut after = t;
@@ -120,10 +118,7 @@ pub fn breakpoints_increase(history: &dyn LoadHistory, times: &[f64]) -> Verdict
 
 /// The loads are valid, finite with forces that press and springs that resist, before and after jumps and between the
 /// times. Forces that pull, which only surfaces that attract each other allow, break it.
-///
-/// # Errors
-/// The first violation.
-pub fn is_a_load(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
+fn is_a_load(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
     for t in and_between(&moments(history, times)) {
         for load in [history.at(t), history.before(t)].iter().filter(|load| load.validate_in(false).is_err()) {
             let (named, found) = (load.names(), load.values());
@@ -135,10 +130,7 @@ pub fn is_a_load(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
 }
 
 /// Repeated evaluation in another order returns bitwise the same loads.
-///
-/// # Errors
-/// The first violation.
-pub fn repeats_itself(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
+fn repeats_itself(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
     let moments = moments(history, times);
     let first: Vec<[Load; 2]> = moments.iter().map(|&t| [history.at(t), history.before(t)]).collect();
     for (&t, loads) in moments.iter().zip(&first).rev() {
@@ -172,27 +164,18 @@ fn one_sided_limits(law: &'static str, history: &dyn LoadHistory, times: &[f64],
 }
 
 /// At each time [`LoadHistory::at`] is the limit from later times.
-///
-/// # Errors
-/// The first violation.
-pub fn right_continuous(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
+fn right_continuous(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
     one_sided_limits("at a time it is the load after it", history, times, 1.0)
 }
 
 /// At each time but the first [`LoadHistory::before`] is the limit from earlier times.
-///
-/// # Errors
-/// The first violation.
-pub fn before_is_the_left_limit(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
+fn before_is_the_left_limit(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
     one_sided_limits("before a time it is the left limit", history, times, -1.0)
 }
 
 /// Between breakpoints the load has no jump and no corner, and does not change its kind. The search follows the
 /// maximum second difference.
-///
-/// # Errors
-/// The first violation.
-pub fn smooth_between_breakpoints(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
+fn smooth_between_breakpoints(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
     let moments = moments(history, times);
     let scale = scales(history, &moments);
     for pair in moments.windows(2) {

@@ -1,7 +1,7 @@
 //! Loads, and how they change with time.
 //!
 //! A [`Load`] is the load of one step. A [`LoadHistory`] returns the load at every time, for
-//! [`ViscoelasticContact::follow`](crate::ViscoelasticContact::follow).
+//! [`Contact::follow`](crate::run::Contact::follow).
 //!
 //! | history | load |
 //! |---|---|

@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | `FrameSeries`: a folder of frames as NPZ archives | `npy` | NumPy, Julia, MATLAB |
 //! | `FrameSeries`: a folder of frames as VTK images, with a `series.pvd` | – | ParaView, VisIt, PyVista |
-//! | `write_npy`, `write_field_npy`: one field as an NPY file | `npy` | NumPy, Julia, MATLAB |
+//! | `write_npy`: one field as an NPY file | `npy` | NumPy, Julia, MATLAB |
 //! | `write_stress`: the stress in a volume as an NPZ archive | `npy` | NumPy, Julia, MATLAB |
 //! | `write_stress`: the stress in a volume as a VTK grid | – | ParaView, VisIt, PyVista |
 //! | `write_states`, `read_states`: elastic states as an NPZ archive | `npy` | NumPy, Julia, MATLAB |
@@ -54,7 +54,7 @@ pub use field::Field;
 pub use format::Format;
 pub use metadata::Metadata;
 #[cfg(feature = "npy")]
-pub use npy::{write_field_npy, write_npy};
+pub use npy::write_npy;
 pub use series::FrameSeries;
 #[cfg(all(feature = "npy", feature = "states"))]
 pub use states::{read_states, states_from_bytes, states_to_bytes, write_states};

@@ -5,10 +5,7 @@ use std::path::Path;
 
 use crate::Grid;
 use crate::error::{Result, exact_length};
-use crate::fields::Fields;
 use crate::file::{npy, replace, write_numbers};
-use crate::output::field_values::write_fields;
-use crate::output::{Field, Format};
 
 /// Writes a field, one value per cell of `grid`, as an NPY file: a `float64` array of the shape of the grid, so that
 /// `numpy.load(path)[i, j]` is the value of the cell `[i, j]`. An existing file is replaced.
@@ -34,34 +31,5 @@ pub fn write_npy(path: impl AsRef<Path>, grid: &Grid, values: &[f64]) -> Result<
     replace(path.as_ref(), |out| {
         out.write_all(&npy::header("<f8", &grid.cells()))?;
         write_numbers(out, values.iter().copied())
-    })
-}
-
-/// Writes a field of the contact as an NPY file, like [`write_npy`]: a call of all [ranks](crate::parallel) that
-/// share out the contact, of which rank 0 writes, and none holds the whole. An existing file is replaced.
-///
-/// Needs the feature `npy`.
-///
-/// ```
-/// use viscocontact::{output::{Field, write_field_npy}, prelude::*};
-///
-/// let mut contact = ViscoelasticContact::builder(Grid::square(16, 4.0e-3)?)
-///     .geometry(&Sphere::new(10.0e-3)?)
-///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
-///     .build()?;
-/// contact.step(0.0, Load::force(0.5))?;
-/// # let path = std::env::temp_dir().join(format!("viscocontact-doc-field-{}.npy", std::process::id()));
-/// write_field_npy(&path, &contact, Field::Pressure)?;
-/// # std::fs::remove_file(&path).unwrap();
-/// # Ok::<(), Error>(())
-/// ```
-///
-/// # Errors
-/// If the file cannot be written.
-pub fn write_field_npy<'a>(path: impl AsRef<Path>, contact: impl Into<Fields<'a>>, field: Field) -> Result<()> {
-    let contact = contact.into();
-    write_fields(path.as_ref(), (contact, &[field], Format::Npz), &mut Vec::new(), |out, values| {
-        out.write_all(&npy::header("<f8", &contact.grid().cells()))?;
-        values.next(|part| write_numbers(out, part.iter().copied()))
     })
 }

@@ -8,13 +8,12 @@
 //! | an outline of the contact on any map | [`Map::outline_contact`] |
 //! | maps, charts, or both side by side | [`Map::save_row`], [`Picture::beside`] |
 //! | a profile along a line | [`Chart::profile`] |
-//! | quantities of a contact over time | [`History`] |
-//! | any quantity over time | [`Chart::history`] |
+//! | quantities over time | [`Chart::history`] |
 //! | any curves, a family coloured by its parameter | [`Chart`], [`Chart::add_family`] |
 //! | an animation of a run | [`Animation`] |
 //!
 //! ```
-//! use viscocontact::plot::{Animation, History, Map, HistoryColumn};
+//! use viscocontact::plot::{Animation, Chart, Map, Quantity};
 //! use viscocontact::{output::Field, prelude::*};
 //!
 //! let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
@@ -23,16 +22,17 @@
 //!     .build()?;
 //! # let folder = std::env::temp_dir().join(format!("viscocontact-doc-plot-{}", std::process::id()));
 //! # std::fs::create_dir_all(&folder).unwrap();
-//! let mut history = History::new();
+//! let (mut times, mut areas) = (Vec::new(), Vec::new());
 //! let mut animation = Animation::create(folder.join("run.gif"), Field::Pressure, [0.0, 0.5e6], 0.2)?;
 //! for dt in [0.0, 0.5, 0.5] {
 //!     contact.step(dt, Load::force(1.0))?;
-//!     history.record(&contact);
+//!     times.push(contact.time());
+//!     areas.push(contact.contact_area());
 //!     animation.record(&contact)?;
 //! }
 //! animation.finish()?;
 //! Map::pressure(&contact)?.save(folder.join("pressure.png"))?;
-//! history.chart(HistoryColumn::ContactArea)?.save(folder.join("area.png"))?;
+//! Chart::history("", &times, Quantity::new("contact area", "m²"), &[("", &areas)])?.save(folder.join("area.png"))?;
 //! # std::fs::remove_dir_all(&folder).unwrap();
 //! # Ok::<(), Error>(())
 //! ```
@@ -69,7 +69,6 @@ pub use animation::Animation;
 pub use chart::{Chart, Scale};
 pub use color::{COLORS, Color, ColorScale};
 pub use curve::{Legend, Style};
-pub use history::{History, HistoryColumn};
 pub use map::Map;
 pub use picture::Picture;
 pub use quantity::{Quantity, measure};

@@ -24,8 +24,8 @@ fn covered_by(time: f64) -> f64 {
 /// Times beyond the ends of a run by this part of them are the ends: 10^3 by a power of ten in steps.
 const COMPUTED: f64 = 1e-12;
 
-/// A run along a load history, made by [`ViscoelasticContact::follow`]. Each call of
-/// [`Run::next_step`] takes one step.
+/// A run along a load history, made by [`Contact::follow`]. Each call of [`Run::next_step`] takes
+/// one step.
 ///
 /// ```
 /// use viscocontact::prelude::*;
@@ -96,37 +96,7 @@ pub struct Run<'a, C: Contact = ViscoelasticContact> {
 }
 
 impl ViscoelasticContact {
-    /// Follows a load history to the time `until` \[s\], in steps chosen by `stepping`.
-    pub fn follow<'a>(&'a mut self, history: &'a dyn LoadHistory, stepping: Stepping, until: f64) -> Run<'a> {
-        Run::new(OwnedOrBorrowed::Borrowed(self), OwnedOrBorrowed::Borrowed(history), stepping, until)
-    }
-
-    /// Like [`ViscoelasticContact::follow`], for a run that owns the contact and its history. Such a run can be stored
-    /// or sent to another thread.
-    ///
-    /// ```
-    /// use viscocontact::prelude::*;
-    ///
-    /// struct Simulation {
-    ///     run: Run<'static>,
-    /// }
-    ///
-    /// let contact = ViscoelasticContact::builder(Grid::square(16, 4.0e-3)?)
-    ///     .geometry(&Sphere::new(10.0e-3)?)
-    ///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
-    ///     .build()?;
-    /// let load = StepLoad::new(Load::force(0.5))?;
-    /// let mut simulation = Simulation { run: contact.into_follow(load, Stepping::fixed(0.5), 1.0) };
-    /// while simulation.run.next_step()?.is_some() {}
-    /// let contact = simulation.run.into_contact();
-    /// assert_eq!(contact.time(), 1.0);
-    /// # Ok::<(), viscocontact::Error>(())
-    /// ```
-    pub fn into_follow(self, history: impl LoadHistory + 'static, stepping: Stepping, until: f64) -> Run<'static> {
-        Run::new(OwnedOrBorrowed::Owned(Box::new(self)), OwnedOrBorrowed::Owned(Box::new(history)), stepping, until)
-    }
-
-    /// Like [`ViscoelasticContact::follow`], for several rigid bodies
+    /// Like [`Contact::follow`], for several rigid bodies
     /// ([`Builder::another_body`](crate::contact::Builder::another_body)): each follows a history of its own, in
     /// their order. Steps end at the corners and jumps of all histories; adaptive ones are as short as the body needs
     /// that needs the shortest, and their error is that of all bodies together.
@@ -390,7 +360,7 @@ impl<'a, C: Contact> Run<'a, C> {
 }
 
 impl<C: Contact> Run<'static, C> {
-    /// The contact of a run that owns it ([`ViscoelasticContact::into_follow`]), after the last step.
+    /// The contact of a run that owns it ([`Contact::into_follow`]), after the last step.
     pub fn into_contact(self) -> C {
         self.contact.into_owned()
     }

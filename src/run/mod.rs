@@ -256,8 +256,27 @@ pub trait Contact: Clone + Debug + Send + Sync + 'static {
         Run::new(OwnedOrBorrowed::Borrowed(self), OwnedOrBorrowed::Borrowed(history), stepping, until)
     }
 
-    /// Like [`Contact::follow`], for a run that owns the contact and its history, as
-    /// [`ViscoelasticContact::into_follow`](crate::ViscoelasticContact::into_follow).
+    /// Like [`Contact::follow`], for a run that owns the contact and its history. Such a run can be stored or sent to
+    /// another thread.
+    ///
+    /// ```
+    /// use viscocontact::prelude::*;
+    ///
+    /// struct Simulation {
+    ///     run: Run<'static>,
+    /// }
+    ///
+    /// let contact = ViscoelasticContact::builder(Grid::square(16, 4.0e-3)?)
+    ///     .geometry(&Sphere::new(10.0e-3)?)
+    ///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
+    ///     .build()?;
+    /// let load = StepLoad::new(Load::force(0.5))?;
+    /// let mut simulation = Simulation { run: contact.into_follow(load, Stepping::fixed(0.5), 1.0) };
+    /// while simulation.run.next_step()?.is_some() {}
+    /// let contact = simulation.run.into_contact();
+    /// assert_eq!(contact.time(), 1.0);
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
     fn into_follow(self, history: impl LoadHistory + 'static, stepping: Stepping, until: f64) -> Run<'static, Self> {
         Run::new(OwnedOrBorrowed::Owned(Box::new(self)), OwnedOrBorrowed::Owned(Box::new(history)), stepping, until)
     }

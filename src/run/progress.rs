@@ -175,7 +175,7 @@ pub struct RunProgress {
     /// Time at the end of the run \[s\].
     pub until: f64,
     /// Length of the first step that took time \[s\]; 0 before.
-    pub first_step: f64,
+    first_step: f64,
 }
 
 impl RunProgress {

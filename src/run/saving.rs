@@ -90,7 +90,7 @@ impl ViscoelasticContact {
     /// Scenes are compared part by part, by numbers: the series of the material, sums over the gap and over the
     /// coefficients of a kernel of one's own, the values of an attraction at some gaps. A run along a history that
     /// saved the contact ([`Run::autosave_to`](crate::run::Run::autosave_to)) resumes with the next
-    /// [`ViscoelasticContact::follow`].
+    /// [`Contact::follow`].
     ///
     /// Needs the feature `checkpoint`.
     ///

@@ -36,7 +36,7 @@ pub struct ElasticState {
     /// body.
     pub load_stiffness: f64,
     /// Growth of the tilts with the level \[rad/m²\].
-    pub tilt_rate: [f64; 2],
+    pub(crate) tilt_rate: [f64; 2],
     /// Contact area, fractions of cells included \[m²\].
     pub area: f64,
     /// Number of cells in contact.

@@ -73,7 +73,6 @@ pub use curve::{ElasticState, ElasticStates};
 pub(crate) use pressed::Pressed;
 pub use reach::Reach;
 pub(crate) use reach::{as_elastic, greatest, sampled, softest_compliance};
-pub use run::StatesRun;
 pub use sweep::Sweep;
 
 use crate::error::{Error, Result};

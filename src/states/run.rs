@@ -9,29 +9,12 @@ use crate::rheology::TemperatureHistory;
 use crate::run::control::Control;
 use crate::run::doubled::{SavedRun, lead};
 use crate::run::progress::Progress;
-use crate::run::{Contact, Run, Stepping};
+use crate::run::{Contact, Stepping};
 use crate::states::contact::StatesContact;
 use crate::states::control::OnLevels;
 
-/// A [`Run`] of a [`StatesContact`], made by [`Contact::follow`]. Adaptive steps are taken whole and in two
-/// halves, and the halves are kept. The error of the step is the difference of both, in depth and force and in what
-/// the surfaces can ever add to them.
-///
-/// ```
-/// use viscocontact::prelude::*;
-/// use viscocontact::states::{Reach, StatesContact, Sweep};
-///
-/// let states = Sweep::new(Grid::square(32, 4.0e-3)?, &Sphere::new(10.0e-3)?).run(Reach::Level(6.0e-7))?;
-/// let mut contact = StatesContact::new(&states, &Material::incompressible(Zener::with_time(1.0e6, 1.0e6, 1.0)?))?;
-/// let load = Ramp::new(Load::force(0.0), Load::force(0.5), 1.0)?;
-/// let mut run = contact.follow(&load, Stepping::adaptive(1.0e-4), 10.0);
-/// while let Some(report) = run.next_step()? {
-///     println!("{:.3} s  {:.4} mm²", report.time, run.contact().contact_area() * 1e6);
-/// }
-/// # Ok::<(), viscocontact::Error>(())
-/// ```
-pub type StatesRun<'a> = Run<'a, StatesContact>;
-
+/// Adaptive steps are taken whole and in two halves, and the halves are kept. The error of the step is the difference
+/// of both, in depth and force and in what the surfaces can ever add to them.
 impl Contact for StatesContact {
     fn step_to(&mut self, time: f64, load: Load) -> Result<StepReport> {
         StatesContact::step_to(self, time, time - self.time(), load)

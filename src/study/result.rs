@@ -66,8 +66,6 @@ pub struct Measured {
     pub mesh: Option<f64>,
     /// The order in the side of the cells that three meshes show; `None` where they do not show one.
     pub order: Option<f64>,
-    /// The change from the mesh before.
-    pub last_change: Option<f64>,
 }
 
 impl Measured {
@@ -340,8 +338,9 @@ impl fmt::Display for StudyResult {
                 write!(f, "  {text:>width$}", width = width(own))?;
             }
         }
-        self.quantities.iter().filter(|own| own.error().is_none() && self.meshes.len() > 1).try_for_each(|own| {
-            let change = own.last_change.unwrap_or(f64::NAN);
+        let all = self.quantities.iter().enumerate();
+        all.filter(|(_, own)| own.error().is_none() && self.meshes.len() > 1).try_for_each(|(k, own)| {
+            let change = self.meshes.iter().filter_map(|mesh| mesh.changes[k]).next_back().unwrap_or(f64::NAN);
             write!(f, "\n{}: not converged, last change {change:.1e}", own.name)
         })
     }

@@ -195,7 +195,6 @@ fn measured(observed: &[Observed<'_>], meshes: &[Mesh], in_time: &[f64], accurac
             time: in_time[k],
             mesh: Some(error).filter(|error| is_known && error.is_finite()),
             order,
-            last_change: differences.last().copied(),
         }
     };
     observed.iter().enumerate().map(one).collect()

@@ -5,6 +5,7 @@ pub mod bodies;
 pub mod chosen_scenes;
 pub mod draws;
 pub mod environment;
+pub mod fields;
 #[path = "../../examples/support/figures.rs"]
 pub mod figures;
 pub mod foundation;

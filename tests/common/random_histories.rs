@@ -55,6 +55,16 @@ impl Control {
     }
 }
 
+/// Force, approach or drive.
+pub fn size(load: Load) -> f64 {
+    match load {
+        Load::Force { normal: size, .. } | Load::Approach { approach: size, .. } | Load::Spring { drive: size, .. } => {
+            size
+        }
+        _ => unreachable!("no other load"),
+    }
+}
+
 /// A history, and the times at which it is not smooth, whether it names them or not.
 pub struct RandomHistory {
     pub name: String,

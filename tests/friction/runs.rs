@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use crate::common::random_bodies::random_body;
-use crate::common::random_histories::{Control, random_history};
+use crate::common::random_histories::{Control, random_history, size};
 use crate::common::{Draws, Ratios, from_environment};
 use viscocontact::prelude::*;
 use viscocontact::run::Contact;
@@ -25,15 +25,6 @@ pub enum Kind {
     Motion(f64),
     /// Of the drive of a spring, and its stiffness.
     Spring(f64, f64),
-}
-
-fn size(load: Load) -> f64 {
-    match load {
-        Load::Force { normal: size, .. } | Load::Approach { approach: size, .. } | Load::Spring { drive: size, .. } => {
-            size
-        }
-        _ => unreachable!("no other load"),
-    }
 }
 
 impl Along {

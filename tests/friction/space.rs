@@ -9,6 +9,7 @@ use super::bodies::{Past, Relaxation};
 use super::dense::relaxation;
 use crate::common::draws::Draws;
 use crate::common::environment::from_environment;
+use crate::common::fields::gap;
 
 /// Influences of one cell on another: xx, yy, xy.
 pub type Influence = Box<dyn Fn([isize; 2]) -> [f64; 3]>;
@@ -153,10 +154,8 @@ impl Scene {
 
     /// The load along the surface: forces, forces and a torque, motions, or one of each.
     pub fn along(&self, force: f64, part: [f64; 3], kind: u8) -> ShearLoad {
-        let n = self.n;
         let capacity =
             self.law.limit(force.max(1e-3 * self.force)) * if let Law::Coulomb(_) = self.law { 1.0 } else { 0.2 };
-        let _ = n;
         let [q1, q2, turn] = [capacity * part[0], capacity * part[1], 0.1 * capacity * part[2]];
         let far = 0.5 * self.law.limit(self.force);
         match kind {
@@ -220,8 +219,7 @@ fn check(seed: u64, n: usize, worst: &mut Worst) {
     let cells = n * n;
     for (dt, force, part, kind) in steps {
         let normal = scene.contact.normal();
-        let (mut gap, before) = (vec![0.0; cells], normal.approach());
-        normal.fields().gap_into(&mut gap).unwrap();
+        let (gap, before) = (gap(normal.fields()), normal.approach());
         let load = scene.along(force, part, kind);
         let state = format!("{:?}", (scene.contact.motion(), scene.contact.force(), scene.contact.traction()));
         let outcome = match scene.contact.step(dt, Load::force(force), load) {

@@ -16,8 +16,8 @@ use viscocontact::adhesion::ExponentialAttraction;
 use viscocontact::prelude::*;
 use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
 
-/// Every scene, saved after each of several numbers of steps, none included: from the file, and from a snapshot in its own memory or by a
-/// clone, the steps after it are the same to the last bit.
+/// Every scene, saved after each of several numbers of steps, none included: from the file or its bytes, and from a snapshot in its own
+/// memory or by a clone, the steps after it are the same to the last bit.
 #[test]
 fn every_scene_continues_from_its_file_and_its_snapshot_bit_by_bit() {
     for (name, build, step) in scenes() {
@@ -26,10 +26,13 @@ fn every_scene_continues_from_its_file_and_its_snapshot_bit_by_bit() {
             let mut contact = build();
             (0..steps).for_each(|k| _ = step(&mut contact, k));
             contact.save(&path).unwrap();
+            let bytes = contact.to_bytes().unwrap();
+            assert!(fs::read(&path).unwrap() == bytes, "{name}, bytes after {steps}");
             contact.snapshot_into(&mut snapshot);
             let (mut resumed, mut clone) = (build(), contact.clone());
             assert!(resumed.restore(&snapshot).is_err_and(|error| error.code() == "other_contact"));
-            resumed.resume(&path).unwrap();
+            let again = if steps == 9 { resumed.resume_bytes(&bytes) } else { resumed.resume(&path) };
+            again.unwrap();
             assert_eq!((contact.time(), contact.load()), (resumed.time(), resumed.load()));
             assert_eq!(
                 (contact.pressure(), contact.fields().displacement()),

@@ -160,14 +160,11 @@ fn kernels(t: &mut Table) {
     let coefficients = |of: &dyn Fn(isize, isize) -> f64| InfluenceKernel::from_coefficients(&grid(), of);
     let of_middle = |i: isize, j: isize, value: f64| if i == 0 && j == 0 { value } else { 0.0 };
     let huge = Grid::square(1 << 20, 1.0).unwrap();
-    t.row(coefficients(&|i, _| if i == 2 { NAN } else { 1.0 }), Value, "the influence coefficient [2, 0] is NaN: …");
     t.row(coefficients(&|i, j| of_middle(i, j, 2.0e100)), Value, "…[0, 0] is 2e100: …at most 1e100 m…");
     t.row(coefficients(&|i, j| (1.0 + 0.1 * (i as f64).signum()) / (1.0 + (i * i + j * j) as f64)), Value, "the influence coefficient [-1, 0] is 0.45: …mirror images");
     t.row(coefficients(&|i, j| of_middle(i, j, -1.0)), Value, "…not positive definite: …check their signs…");
     t.row(InfluenceKernel::from_coefficients(&huge, |_, _| 1.0), Memory, "a kernel of coefficients needs 43980…");
     t.row(InfluenceKernel::half_space(&huge).unwrap().workspace(), Memory, "the workspace of a kernel needs 35185…bytes…take fewer cells…");
-    t.row(Layer::frictionless_on_rigid(2.0e300, 0.3), Value, "thickness of a layer = 2e300 → finite, > 0 and at most 1e300 m");
-    t.row(Layer::frictionless_on_rigid(1.0, 0.51), Value, "Poisson's ratio of a layer = 0.51 → in (-1, 0.5]");
     let steel = || Material::constant_poisson(Elastic::new(80.0e9).unwrap(), 0.3).unwrap();
     let bulk = Material::elastic_bulk(Zener::with_time(1.0e6, 0.5e6, 0.1).unwrap(), 1.0e9).unwrap();
     let soft = Material::incompressible(Elastic::new(1.0).unwrap());
@@ -226,7 +223,6 @@ fn loads_and_texts(t: &mut Table) {
     t.row(Sinusoid::new(force(0.0), force(1.0), 0.0), Value, "frequency = 0.0 → finite and > 0");
     t.row(Sinusoid::new(force(0.0), Load::approach(1.0), 1.0), Value, "the sinusoid mixes loads…(a force…: take loads of one kind…");
     t.row(Sinusoid::new(force(2.0), force(1.0), 1.0), Value, "sinusoid from low to high[1] = 1.0 may not follow 2.0: …`Sinusoid::about`…");
-    t.row(Sinusoid::new(Load::spring(1.0, 2.0), Load::spring(1.0, 1.0), 1.0), Value, "sinusoid from low to high[1] = 1.0 may not follow 2.0: …`Sinusoid::about`…");
 }
 
 #[rustfmt::skip]
@@ -244,7 +240,7 @@ fn materials(t: &mut Table) {
     t.row(FractionalMaxwell::with_time(1.0, 1.0, 1.0), Value, "exponent = 1.0 → in (0, 1)");
     let falls_to = |compliance: f64| FnRheology::new(move |t| if t < 2.0 { 1.0e-6 } else { compliance });
     for (to, says) in [(-1.0e-6, "creep is finite and not negative: …t = 2.37… s is -1e-6…"), (0.0, "creep is positive after t = 0: …is 0.0, expected more than 0.0")] {
-        t.row(laws::non_negative(&falls_to(to), &laws::log_times(0.1, 10.0)), Value, says);
+        t.row(laws::all(&falls_to(to), &laws::log_times(0.1, 10.0)), Value, says);
     }
     t.row(library::all()[0].material(0.6), Value, "Poisson's ratio = … → in (-1, 0.5]");
     t.row(Material::elastic_bulk(Elastic::new(1.0e6).unwrap(), NAN), Value, "bulk modulus = … → finite and > 0");
@@ -255,7 +251,6 @@ fn materials(t: &mut Table) {
     t.row(SlowCreep::new(1.0, 1.0, 1.0, 1.1), Value, "exponent = 1.1 → in (0, 1]");
     t.row(Maxwell::with_time(1.0e6, 1.0).unwrap().creep_spectrum().unwrap().scaled(0.0), Value, "factor of a creep spectrum = … → finite and > 0");
     t.row(RelaxationSpectrum::new(1.0e101, 0.0, &[]), Value, "equilibrium modulus = 1e101 → 0, or in [1e-100, 1e100]");
-    t.row(RelaxationSpectrum::new(1.0, 0.0, &[(-1.0, 1.0)]), Value, "relaxing modulus = -1.0 → 0, or in [1e-100, 1e100]");
     t.row(RelaxationSpectrum::new(1.0, 0.0, &[(1.0, 0.0)]), Value, "relaxation time = 0.0 → in [1e-100, 1e100]");
     t.row(RelaxationSpectrum::new(0.0, 0.0, &[(0.0, 1.0)]), Value, "relaxation spectrum: 0 given, at least 1 needed");
     t.row(Zener::relaxing(1.0, 2.0, 1.0), Value, "glassy modulus = 1.0 → finite, and greater than the rubbery modulus");
@@ -313,13 +308,10 @@ struct Growing;
 
 impl Attraction for Growing {
     fn traction(&self, gap: f64) -> f64 {
-        1.0e3 * gap / (1.0e-6 + gap)
+        1.0e3 * (1.0 + gap / 1.0e-4)
     }
     fn energy(&self, _: f64) -> f64 {
         0.1
-    }
-    fn range(&self) -> f64 {
-        1.0e-6
     }
 }
 
@@ -336,7 +328,7 @@ impl Geometry for Restless {
 #[rustfmt::skip]
 fn shapes(t: &mut Table) {
     t.row(Dugdale::new(0.1, 1.0e-6).unwrap().with_width(2.1), Value, "width of the end of Dugdale's law = 2.1 → in [0.01, 2]");
-    t.row(attraction_laws::attracts_less_with_the_gap(&Growing), Value, "the traction does not grow with the gap: …1e-9 m is 0.999…");
+    t.row(attraction_laws::all(&Growing), Value, "the traction does not grow with the gap: …is 1000…, expected 1000.0");
     t.row(VanDerWaals::new(0.1, NAN), Value, "range of the attraction = NaN → finite, > 0 and at most 1e300 m");
     t.row(VanDerWaals::new(1.0e300, 1.0e-300), Value, "maximum traction of the attraction = inf → finite and > 0");
     t.row(MaugisDugdale::new(1.0e-3, 1.0e6, 0.05, 0.0), Value, "traction = … → finite and > 0");
@@ -344,8 +336,7 @@ fn shapes(t: &mut Table) {
     t.row(RigidPunch::new(1.0e-3, 1.0e6, -1.0, 0.0), Value, "force = -1.0 → finite and >= 0");
     t.row(RigidPunch::new(1.0e-3, 1.0e6, 1.0, -0.4e-3), Value, "eccentricity = -0.0004 → in [-R/3, R/3], otherwise the contact opens");
     let grid = Grid::square(8, 1.0e-3).unwrap();
-    t.row(shape_laws::repeats_itself(&Restless(0.into()), &grid), Value, "repeated evaluations give the same gap: gap on cell [0, 0] …");
-    t.row(shape_laws::zero_shift_changes_nothing(&Restless(0.into()), &grid), Value, "a shift by zero changes nothing: gap on cell [0, 0] …");
+    t.row(shape_laws::all(&Restless(0.into()), &grid), Value, "repeated evaluations give the same gap: gap on cell [0, 0] …");
     t.row(Shifted::new(Sphere::new(1.0).unwrap(), [0.0, f64::INFINITY]), Value, "shift along x… → finite");
     t.row(ElasticStates::punch(1.0e200), Value, "punch radius = … → in [1e-100, 1e100]");
     let state = (1.0e-12, 1.0e-6, 1.0e-6, 1.0e-12);

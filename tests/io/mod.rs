@@ -31,3 +31,10 @@ fn with_room_for_32_kib(test: &str, folder: &std::path::Path) -> std::process::O
     command.args(["-c", &limited]).arg(std::env::current_exe().unwrap()).env("FULL_FOLDER", folder);
     command.output().unwrap()
 }
+
+/// The numbers of a field in an archive of NumPy.
+pub(super) fn numbers_of(path: &std::path::Path, name: &str) -> Vec<f64> {
+    let (mut archive, mut bytes) = (zip::ZipArchive::new(std::fs::File::open(path).unwrap()).unwrap(), Vec::new());
+    std::io::Read::read_to_end(&mut archive.by_name(&format!("{name}.npy")).unwrap(), &mut bytes).unwrap();
+    npyz::NpyFile::new(&bytes[..]).unwrap().into_vec().unwrap()
+}

@@ -1,5 +1,6 @@
 //! Files of results are read back bit by bit, by readers that share no code with the writers.
 
+use crate::common::fields::gap;
 use crate::common::{Temporary, contact_of, maxwell, sphere_on};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -51,11 +52,7 @@ fn values(contact: &ViscoelasticContact, field: Field) -> Vec<f64> {
         // nothing attracts here
         Field::Pressure | Field::Traction => contact.pressure().to_vec(),
         Field::Displacement => contact.fields().displacement().to_vec(),
-        _ => {
-            let mut gap = vec![0.0; contact.grid().len()];
-            contact.fields().gap_into(&mut gap).unwrap();
-            gap
-        }
+        _ => gap(contact.fields()),
     }
 }
 
@@ -88,7 +85,7 @@ mod npy {
 
     #[test]
     fn an_archive_of_the_stress() {
-        use viscocontact::output::{write_field_npy, write_stress};
+        use viscocontact::output::write_stress;
 
         let folder = Temporary::folder("npz-stress");
         let (contact, depths, volume) = stressed();
@@ -98,10 +95,6 @@ mod npy {
         assert_eq!(archive.0.len(), 14);
         assert_eq!(archive.numbers("x3"), (vec![3], depths.to_vec()));
         assert_eq!(archive.numbers("pressure"), (vec![24, 17], contact.pressure().to_vec()));
-        let [values, field] = ["values.npy", "field.npy"].map(|name| folder.join(name));
-        write_npy(&values, contact.grid(), contact.pressure()).unwrap();
-        write_field_npy(&field, &contact, Field::Pressure).unwrap();
-        assert_eq!(fs::read(values).unwrap(), fs::read(field).unwrap());
         for (which, name) in ["s11", "s22", "s33", "s12", "s13", "s23", "von_mises", "tresca"].into_iter().enumerate() {
             let (shape, found) = archive.numbers(name);
             assert_eq!(shape, [24, 17, 3]);
@@ -219,10 +212,7 @@ mod csv {
         let (path, contact) = (folder.join("history.csv"), punch());
         for names in [&["a", "a"][..], &["time [s]"], &[""], &["a#b"], &["a\nb"], &["\"a\""]] {
             let error = CsvHistory::create(&path, &scene(), &contact, names, Earlier::Refuse).unwrap_err();
-            assert!(
-                matches!(&error, Error::Output(error) if error.io_error().to_string().contains("column")),
-                "{error}"
-            );
+            assert!(error.code() == "output" && format!("{error:?}").contains("column"), "{error:?}");
         }
         assert!(folder.names().is_empty());
         fs::write(&path, "years of work").unwrap();

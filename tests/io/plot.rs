@@ -8,9 +8,7 @@ use std::fs;
 use viscocontact::ErrorKind;
 use viscocontact::observe::Stress;
 use viscocontact::output::Field;
-use viscocontact::plot::{
-    Animation, COLORS, Chart, ColorScale, History, HistoryColumn, Legend, Map, Picture, Quantity, Scale, Style, measure,
-};
+use viscocontact::plot::{Animation, COLORS, Chart, ColorScale, Legend, Map, Picture, Quantity, Scale, Style, measure};
 use viscocontact::prelude::*;
 
 /// A ball on a Maxwell body under force; on 32 × 24 cells, so that axes are not mixed up.
@@ -184,23 +182,16 @@ fn pressure_is_blank_out_of_contact() {
 #[test]
 fn profiles_and_histories_hold_the_state() {
     let mut contact = ball();
-    let mut history = History::new();
-    assert_eq!(
-        history.chart(HistoryColumn::Force).unwrap().draw().unwrap_err().kind(),
-        ErrorKind::Value,
-        "nothing to draw yet"
-    );
+    let empty = Chart::history("", &[], "q", &[("", &[])]).unwrap();
+    assert_eq!(empty.draw().unwrap_err().kind(), ErrorKind::Value, "nothing to draw yet");
+    let (mut times, mut areas) = (Vec::new(), Vec::new());
     for _ in 0..3 {
-        history.record(&contact);
+        times.push(contact.time());
+        areas.push(contact.contact_area());
         contact.step(0.5, Load::force(0.3)).unwrap();
     }
-    assert_eq!(history.times(), [0.0, 0.5, 1.0]);
-    assert!(history.column(HistoryColumn::ContactArea).windows(2).all(|w| w[1] > w[0]));
-    for observed in HistoryColumn::ALL {
-        assert_eq!(history.column(observed).len(), 3);
-        history.chart(observed).unwrap().draw().unwrap();
-    }
-    let short = Chart::history("", history.times(), "q", &[("a", &[1.0, 2.0])]);
+    Chart::history("", &times, Quantity::new("contact area", "m²"), &[("", &areas)]).unwrap().draw().unwrap();
+    let short = Chart::history("", &times, "q", &[("a", &[1.0, 2.0])]);
     assert!(matches!(short, Err(Error::WrongLength { field: "column of a history", len: 2, expected: 3, .. })));
     Chart::profile(&contact, Axis::X2, 0.5e-3).unwrap().draw().unwrap();
     assert!(matches!(Chart::profile(&contact, Axis::X2, 1.0), Err(Error::OutOfRange { .. })));

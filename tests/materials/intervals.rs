@@ -1,7 +1,6 @@
 //! Random tables of bodies of one to four relaxation times, with noise of up to 3 % and without, that begin before or after
 //! the relaxation: their creep against the exact one at all measured times. `TABLE_SEEDS` (60) tables of each kind are drawn.
 
-use super::fitted;
 use crate::common::{Ratios, from_environment, pairs, uniform};
 use viscocontact::prelude::*;
 use viscocontact::rheology::{CreepSpectrum, Experiment, FitReport, FitWarning, RelaxationSpectrum};
@@ -38,7 +37,8 @@ impl Table {
                 (-2.0 * (1.0 - between(0.0, 1.0)).ln()).sqrt() * (std::f64::consts::TAU * between(0.0, 1.0)).cos();
             value * (1.0 + noise * normal)
         };
-        let table = fitted(kind, (&|t| truth.compliance(t), &relaxation), &times, &mut measured).unwrap();
+        let table = super::table(kind, (&|t| truth.compliance(t), &relaxation), &times, &mut measured);
+        let table = table.fit().unwrap();
         let (fitted, report, known_from) = (table.spectrum().clone(), table.report().clone(), table.measured()[0]);
         Table { report, fitted, truth, times: [first, times[rows - 1]], noise, known_from }
     }

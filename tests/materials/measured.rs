@@ -9,7 +9,7 @@ use crate::common::{Ratios, noise, pairs, sphere_on, triples};
 use approx::assert_abs_diff_eq;
 use viscocontact::contact::Warnings;
 use viscocontact::prelude::*;
-use viscocontact::rheology::{CreepSeries, CreepSpectrum, Isotherm, MasterCurve, TimeTemperature};
+use viscocontact::rheology::{CreepSeries, CreepSpectrum, Experiment, Isotherm, MasterCurve, TimeTemperature};
 use viscocontact::{Error, Result};
 
 fn log_spaced(first: f64, last: f64, a_decade: usize) -> Vec<f64> {
@@ -96,12 +96,10 @@ fn relaxation_and_dynamic_tables_give_the_same_body() {
         let mut times = log_spaced(1e-5, 1e6, 10);
         times.retain(|&t| relaxation.modulus(t) > 1e-6 * relaxation.modulus(0.0));
         let last = times[times.len() - 1];
-        let moduli: Vec<f64> = times.iter().map(|&t| relaxation.modulus(t)).collect();
-        let relaxed = Measurements::relaxation(&pairs(&times, &moduli)).and_then(|table| table.fit()).unwrap();
-        let omega: Vec<f64> = times.iter().map(|t| 1.0 / t).collect();
-        let storage: Vec<f64> = omega.iter().map(|&omega| relaxation.complex_modulus(omega).re).collect();
-        let loss: Vec<f64> = omega.iter().map(|&omega| relaxation.complex_modulus(omega).im).collect();
-        let dynamic = Measurements::dynamic(&triples(&omega, &storage, &loss)).and_then(|table| table.fit()).unwrap();
+        let [relaxed, dynamic] = [Experiment::Relaxation, Experiment::Dynamic].map(|experiment| {
+            let table = super::table(experiment, (&|t| truth.compliance(t), &relaxation), &times, |value| value);
+            table.fit().unwrap()
+        });
         assert_abs_diff_eq!(dynamic.known_until() / last, 1.0, epsilon = 1e-12);
         assert_eq!(relaxed.known_until(), last);
         for (kind, body) in [("relaxation", &relaxed as &dyn Rheology), ("dynamic", &dynamic)] {

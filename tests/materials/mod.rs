@@ -12,20 +12,20 @@ mod superposed;
 mod tension;
 mod vertical;
 
-use viscocontact::rheology::{CreepSeries, Experiment, Measurements, RelaxationSpectrum};
+use viscocontact::rheology::{Experiment, Measurements, RelaxationSpectrum};
 
 use crate::common::{pairs, triples};
 
-/// A table of a body, fitted: its creep or its moduli at `times`, or at the frequencies that are their reciprocals, each value as
-/// it was `measured`.
-fn fitted(
+/// A table of a body: its creep or its moduli at `times`, or at the frequencies that are their reciprocals, each value as it was
+/// `measured`.
+fn table(
     experiment: Experiment,
     (creep, relaxation): (&dyn Fn(f64) -> f64, &RelaxationSpectrum),
     times: &[f64],
     mut measured: impl FnMut(f64) -> f64,
-) -> viscocontact::Result<CreepSeries> {
+) -> Measurements {
     let mut column = |x: &[f64], value: &dyn Fn(f64) -> f64| x.iter().map(|&x| measured(value(x))).collect::<Vec<_>>();
-    let table = match experiment {
+    let rows = match experiment {
         Experiment::Creep => Measurements::creep(&pairs(times, &column(times, creep))),
         Experiment::Relaxation => Measurements::relaxation(&pairs(times, &column(times, &|t| relaxation.modulus(t)))),
         _ => {
@@ -35,5 +35,5 @@ fn fitted(
             Measurements::dynamic(&triples(&omega, &storage, &loss))
         }
     };
-    table.and_then(|table| table.fit())
+    rows.unwrap()
 }

@@ -1,7 +1,6 @@
 //! Tables of few rows: smooth bodies over four to eight decades, with and without noise. What is fitted is compared with the
 //! exact model at the rows and between them. `SPARSE_SEEDS` (2) times seven bodies are drawn.
 
-use super::fitted;
 use crate::common::{Ratios, from_environment, noise, pairs, sphere_on, uniform};
 use viscocontact::contact::Warnings;
 use viscocontact::prelude::*;
@@ -97,7 +96,7 @@ fn tables(kind: Experiment, deviation: f64, mut look: impl FnMut(&str, &[(f64, F
                 let times = log_spaced(body.decades, rows);
                 let check = log_spaced(body.decades, (53.0 * body.decades) as usize);
                 let check: Vec<f64> = check.iter().map(|t| t.min(times[rows - 1])).collect();
-                let table = fitted(kind, (&creep, &truth), &times, measured);
+                let table = super::table(kind, (&creep, &truth), &times, measured).fit();
                 let table = table.unwrap_or_else(|error| panic!("{}: {error}", body.name));
                 let found = table.spectrum().relaxation();
                 let error = |t: f64| match kind {

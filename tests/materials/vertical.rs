@@ -36,22 +36,12 @@ fn law(draws: &mut Draws) -> TimeTemperature {
 /// What an instrument measures of a body with such moduli and creep at a temperature, over four decades.
 fn isotherm(experiment: Experiment, body: &RelaxationSpectrum, law: &TimeTemperature, kelvin: f64) -> Isotherm {
     let (slow, stiff) = (law.shift_factor(kelvin).unwrap(), law.vertical_factor(kelvin).unwrap());
+    let terms: Vec<_> = body.terms().iter().map(|(modulus, time)| (stiff * modulus, slow * time)).collect();
+    let body = RelaxationSpectrum::new(stiff * body.equilibrium(), 0.0, &terms).unwrap();
     let creep = body.creep();
-    let x = (-10..=10).map(|k| 10f64.powf(0.2 * f64::from(k)));
-    let measured = match experiment {
-        Experiment::Creep => {
-            Measurements::creep(&x.map(|t| (t, creep.compliance(t / slow) / stiff)).collect::<Vec<_>>())
-        }
-        Experiment::Relaxation => {
-            Measurements::relaxation(&x.map(|t| (t, stiff * body.modulus(t / slow))).collect::<Vec<_>>())
-        }
-        _ => {
-            let modulus = |w: f64| (w, stiff * body.complex_modulus(w * slow));
-            let rows: Vec<_> = x.map(modulus).map(|(w, modulus)| (w, modulus.re, modulus.im)).collect();
-            Measurements::dynamic(&rows)
-        }
-    };
-    Isotherm::new(kelvin, measured.unwrap()).unwrap()
+    let times: Vec<f64> = (-10..=10).map(|k| 10f64.powf(0.2 * f64::from(k))).collect();
+    let measured = super::table(experiment, (&|t| creep.compliance(t), &body), &times, |value| value);
+    Isotherm::new(kelvin, measured).unwrap()
 }
 
 /// Random curves of known shifts: the factors that are found, and the creep at every temperature within the window measured there,

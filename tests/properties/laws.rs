@@ -47,19 +47,12 @@ fn obeys(name: &str, verdict: laws::Verdict) {
     verdict.unwrap_or_else(|violation| panic!("{name}: {violation}"));
 }
 
+/// Every model, and what a contact runs on: its series over ten decades, with its error and its laws, J ∗ G = t among them.
 #[test]
-fn every_model_obeys_every_law() {
+fn every_model_and_its_series_obey_every_law() {
     let times = laws::log_times(1e-5, 1e5);
     for (name, model) in models() {
         obeys(name, laws::all(&*model, &times));
-    }
-}
-
-/// What a contact runs on: the series of every model over ten decades, its error and its laws.
-#[test]
-fn every_series_obeys_every_law() {
-    let times = laws::log_times(1e-5, 1e5);
-    for (name, model) in models() {
         let series = model.series(1e-5..=1e5, 1e-4).unwrap_or_else(|error| panic!("{name}: {error}"));
         println!("{name}: {}", series.report());
         assert!(series.report().max_misfit() <= 1e-4, "{name}");
@@ -144,34 +137,19 @@ proptest! {
     }
 }
 
-/// Shapes by their name; interpolated shapes are on their own grid.
+/// Shapes that are not among those drawn at random; interpolated shapes are on their own grid.
 fn shapes() -> Vec<(&'static str, Grid, Box<dyn Geometry>)> {
     let grid = || Grid::new([12, 9], [1.2, 0.9]).unwrap();
     let spec = RoughSpec::new(1.0, 0.2, Roughness::RmsHeight(1e-3)).with_roll_off(0.5).with_seed(3);
-    let sphere = || Sphere::new(1.0).unwrap();
-    let map = || {
-        let heights = (0..108).map(|k| ((k * k) as f64).sin()).collect();
-        HeightMap::new([12, 9], [1.2, 0.9], heights).unwrap()
-    };
-    let missing =
-        HeightMap::new([12, 9], [1.2, 0.9], (0..108).map(|k| if k % 7 == 0 { f64::NAN } else { 1.0 }).collect());
+    let heights = |at: fn(usize) -> f64| HeightMap::new([12, 9], [1.2, 0.9], (0..108).map(at).collect()).unwrap();
+    let missing = heights(|k| if k % 7 == 0 { f64::NAN } else { 1.0 });
     let shapes: Vec<(_, Box<dyn Geometry>)> = vec![
-        ("Sphere", Box::new(sphere())),
-        ("Ellipsoid", Box::new(Ellipsoid::new(1.0, 3.0).unwrap())),
-        ("Cylinder", Box::new(Cylinder::new(1.0).unwrap())),
-        ("Cone", Box::new(Cone::new(0.1).unwrap())),
-        ("FlatPunch", Box::new(FlatPunch::circular(0.31).unwrap())),
         ("FlatPunch on cell centres", Box::new(FlatPunch::rectangular([0.5, 0.4]).unwrap())),
-        ("Wavy", Box::new(Wavy::in_two_directions([1.0, 2.0], [0.3, 0.7]).unwrap())),
-        ("Shifted", Box::new(Shifted::new(sphere(), [0.03, -0.1]).unwrap())),
-        ("Repeated", Box::new(Repeated::new(sphere(), [0.5, f64::INFINITY]).unwrap())),
-        ("Sum", Box::new(Sum::new(sphere(), map()))),
-        ("HeightMap", Box::new(map())),
-        ("HeightMap, periodic", Box::new(map().periodic())),
-        ("HeightMap with holes", Box::new(missing.unwrap().masked())),
+        ("Sum", Box::new(Sum::new(Sphere::new(1.0).unwrap(), heights(|k| ((k * k) as f64).sin())))),
+        ("Repeated along x1", Box::new(Repeated::new(Sphere::new(1.0).unwrap(), [0.5, f64::INFINITY]).unwrap())),
+        ("HeightMap with holes", Box::new(missing.masked())),
         ("Rough", Box::new(Rough::new(&grid(), spec).unwrap())),
         ("FnGeometry", Box::new(FnGeometry::new(|x1: f64, x2: f64| x1.abs() + x2))),
-        ("Arc", Box::new(std::sync::Arc::new(sphere()))),
     ];
     shapes.into_iter().map(|(name, shape)| (name, grid(), shape)).collect()
 }
@@ -180,10 +158,6 @@ fn shapes() -> Vec<(&'static str, Grid, Box<dyn Geometry>)> {
 fn every_geometry_obeys_every_law() {
     for (name, grid, shape) in shapes() {
         obeys(name, geometry::laws::all(&*shape, &grid));
-    }
-    // what has a formula moves by any distance
-    for (name, grid, shape) in shapes().into_iter().take(9) {
-        obeys(name, geometry::laws::shift_matches_points(&*shape, &grid, [0.0123, -0.77], 0.0));
     }
 }
 
@@ -246,28 +220,16 @@ fn every_law_of_geometry_can_be_broken() {
     assert_eq!(error.law, "the shifted field is the gap at the shifted points");
 }
 
-fn table(entries: &[(f64, f64)]) -> PiecewiseLinear {
-    PiecewiseLinear::new(&entries.iter().map(|&(t, force)| (t, Load::force(force))).collect::<Vec<_>>()).unwrap()
-}
-
 #[test]
 fn every_history_obeys_every_law() {
     let hinge = |normal, at| Load::Force { normal, tilt: [Tilt::Free { at }, Tilt::Fixed(0.0)] };
+    let table = PiecewiseLinear::new(&[(1.0, Load::force(0.0)), (2.0, Load::force(1.0))]);
+    // what is not drawn at random, and times before 0
     let histories: Vec<(&str, Box<dyn LoadHistory>)> = vec![
-        ("StepLoad", Box::new(StepLoad::new(Load::force(1.0)).unwrap())),
         ("StepLoad, approach", Box::new(StepLoad::new(Load::approach(1e-6)).unwrap())),
         ("Ramp", Box::new(Ramp::new(hinge(0.0, 0.1), hinge(2.0, -0.3), 0.7).unwrap())),
-        ("table", Box::new(table(&[(0.0, 0.0), (0.3, 1.0), (0.3, 0.2), (0.31, 5.0), (4.0, 0.0)]))),
-        ("square", Box::new(Periodic::square(Load::force(1.0), Load::force(0.0), 0.29, 0.3).unwrap())),
-        ("triangle", Box::new(Periodic::triangle(Load::force(1.0), Load::force(0.0), 0.29).unwrap())),
-        ("sawtooth", Box::new(Periodic::sawtooth(Load::force(1.0), Load::force(0.0), 0.29).unwrap())),
         ("level", Box::new(Periodic::triangle(Load::force(2.0), Load::force(2.0), 0.1).unwrap())),
         ("Sinusoid", Box::new(Sinusoid::new(Load::approach(-1e-6), Load::approach(1e-6), 7.0).unwrap())),
-        ("FnHistory", Box::new(FnHistory::new(|t: f64| Load::force((1.0 + t).ln_1p())))),
-        (
-            "FnHistory with a corner",
-            Box::new(FnHistory::new(|t: f64| Load::force((t - 0.77).abs())).with_breakpoints(&[0.77]).unwrap()),
-        ),
         (
             "arches, nothing at their feet",
             Box::new(
@@ -276,7 +238,7 @@ fn every_history_obeys_every_law() {
                     .unwrap(),
             ),
         ),
-        ("Arc", Box::new(std::sync::Arc::new(table(&[(1.0, 0.0), (2.0, 1.0)])))),
+        ("Arc of a table", Box::new(std::sync::Arc::new(table.unwrap()))),
     ];
     for (name, history) in histories {
         for times in [

@@ -9,7 +9,7 @@ use crate::common::any_scene::{AnyScene, Course, Stepper};
 use std::sync::Arc;
 
 use crate::common::{Draws, Temporary, builder_of, chosen_scenes, from_environment, zener};
-use viscocontact::output::{CsvHistory, Earlier, Field, Format, FrameSeries, Metadata, write_field_npy};
+use viscocontact::output::{CsvHistory, Earlier, Field, Format, FrameSeries, Metadata};
 use viscocontact::parallel::Threads;
 use viscocontact::prelude::*;
 
@@ -181,7 +181,6 @@ fn write(scene: &AnyScene, mut contact: ViscoelasticContact, folder: &Path) -> R
         areas.push(contact.contact_area());
         Ok(areas.len() < 2)
     });
-    write_field_npy(folder.join("gap.npy"), &contact, Field::Gap)?;
     error.map_or(Ok(areas), Err)
 }
 
@@ -202,7 +201,7 @@ fn files_of_ranks_are_those_of_one_process() {
         let areas = write(&scene, scene.contact(None).unwrap(), &root).unwrap();
         assert!(areas.len() == 2 && areas.iter().all(|&area| area > 0.0), "{}", scene.name);
         let expected = files(&root);
-        assert_eq!(expected.len(), 8, "{:?}", expected.keys());
+        assert_eq!(expected.len(), 7, "{:?}", expected.keys());
         for size in [1, 3, 9] {
             fs::remove_dir_all(&root).unwrap();
             let written = Threads::run(size, |ranks| write(&scene, scene.contact(Some(&ranks))?, &root)).unwrap();

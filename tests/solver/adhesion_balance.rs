@@ -4,16 +4,14 @@
 use super::adhesion_population::{Drawn, Scene};
 use crate::common::draws::Draws;
 use crate::common::environment::from_environment;
+use crate::common::fields::{gap, traction};
 use viscocontact::adhesion::ExponentialAttraction;
 use viscocontact::contact::{Energies, EnergyBalance, StepError};
 use viscocontact::prelude::*;
 
 /// What the bodies store: ½ Σ q u, less the energy of the attraction.
 fn stored(contact: &ViscoelasticContact) -> f64 {
-    let cells = contact.grid().len();
-    let (mut traction, mut gap) = (vec![0.0; cells], vec![0.0; cells]);
-    contact.fields().traction_into(&mut traction).unwrap();
-    contact.fields().gap_into(&mut gap).unwrap();
+    let (traction, gap) = (traction(contact.fields()), gap(contact.fields()));
     let displaced = traction.iter().zip(contact.fields().displacement()).map(|(q, u)| 0.5 * q * u);
     let attracted = gap.iter().map(|h| contact.fields().attraction().unwrap().energy(h.max(0.0)));
     (displaced.sum::<f64>() - attracted.sum::<f64>()) * contact.grid().cell_area()

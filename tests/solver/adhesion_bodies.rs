@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use crate::common::draws::Draws;
 use crate::common::environment::from_environment;
+use crate::common::fields::traction;
 use crate::solver::adhesion_population::check;
 use viscocontact::adhesion::{Attraction, ExponentialAttraction, LinearSoftening};
 use viscocontact::geometry::Sum;
@@ -86,9 +87,7 @@ fn neither_symmetry_threads_nor_the_unit_of_time_change_a_state() {
                     let approach = touch + down * [0.0, 0.5, 1.0, 0.7, 0.4, 0.1, -0.2, -0.5][k];
                     contact.step(if way.warm { step * shift } else { step }, Load::approach(approach)).unwrap();
                     check(&format!("{name}, step {k}"), &contact, &*law, elastic);
-                    let mut traction = vec![0.0; contact.grid().len()];
-                    contact.fields().traction_into(&mut traction).unwrap();
-                    all.extend(traction);
+                    all.extend(traction(contact.fields()));
                 }
             };
             rayon::ThreadPoolBuilder::new().num_threads(way.threads).build().unwrap().install(steps);

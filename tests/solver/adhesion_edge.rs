@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::common::fields::traction;
 use crate::common::sticky::{ball, elastic};
 use viscocontact::adhesion::{Attraction, ExponentialAttraction, VanDerWaals};
 use viscocontact::contact::Warnings;
@@ -17,9 +18,7 @@ fn pressed(law: &Arc<dyn Attraction>, side: f64, edge: Edge, folded: bool) -> Re
     let cells = (FINENESS * side) as usize;
     let mut contact = ball(cells, side, elastic(), Arc::clone(law)).settings(settings).build()?;
     let report = contact.step(1.0, Load::approach(0.5))?;
-    let mut traction = vec![0.0; contact.grid().len()];
-    contact.fields().traction_into(&mut traction)?;
-    let sum: f64 = traction.iter().map(|q| q.abs()).sum();
+    let sum: f64 = traction(contact.fields()).iter().map(|q| q.abs()).sum();
     Ok((report.force, sum * contact.grid().cell_area(), report))
 }
 

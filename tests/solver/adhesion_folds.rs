@@ -6,6 +6,7 @@ use std::path::Path;
 use super::adhesion_population::{Drawn, SIDE, Scene, rough};
 use crate::common::draws::Draws;
 use crate::common::environment::from_environment;
+use crate::common::fields::traction;
 use crate::common::temporary::Temporary;
 use viscocontact::contact::{StepError, Warnings};
 use viscocontact::geometry::Sum;
@@ -59,11 +60,7 @@ impl Pair {
         rough.save(checkpoint).unwrap();
         fine.resume(checkpoint).unwrap();
         fine.step(0.0, rough.load()).unwrap();
-        let [rough, fine] = [rough, fine].map(|contact| {
-            let mut traction = vec![0.0; contact.grid().len()];
-            contact.fields().traction_into(&mut traction).unwrap();
-            traction
-        });
+        let [rough, fine] = [rough, fine].map(|contact| traction(contact.fields()));
         rough.iter().zip(&fine).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / self.greatest
     }
 }

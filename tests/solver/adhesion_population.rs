@@ -4,7 +4,7 @@
 
 use std::sync::Arc;
 
-use crate::common::{Draws, builder_of, from_environment};
+use crate::common::{Draws, builder_of, fields, from_environment};
 use viscocontact::adhesion::{Attraction, Dugdale, ExponentialAttraction, LinearSoftening, VanDerWaals};
 use viscocontact::contact::StepError;
 use viscocontact::geometry::Sum;
@@ -108,9 +108,7 @@ impl Scene {
 /// The state satisfies the equations of a step.
 pub(super) fn check(name: &str, contact: &ViscoelasticContact, law: &dyn Attraction, elastic: bool) {
     let cells = contact.grid().len();
-    let (mut traction, mut gap, mut image) = (vec![0.0; cells], vec![0.0; cells], vec![0.0; cells]);
-    contact.fields().traction_into(&mut traction).unwrap();
-    contact.fields().gap_into(&mut gap).unwrap();
+    let (traction, gap) = (fields::traction(contact.fields()), fields::gap(contact.fields()));
     let (greatest, range) = (law.traction(0.0), law.range());
     for k in (0..cells).filter(|&k| gap[k].is_finite()) {
         let (z, h) = (contact.pressure()[k], gap[k]);
@@ -129,6 +127,7 @@ pub(super) fn check(name: &str, contact: &ViscoelasticContact, law: &dyn Attract
         assert!(off < 1e-9 * scale * contact.grid().cell_area() + rounding, "{name}: {force} {balance}");
     }
     if elastic {
+        let mut image = vec![0.0; cells];
         contact
             .fields()
             .kernel()

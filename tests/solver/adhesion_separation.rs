@@ -1,6 +1,7 @@
 //! When are bodies that attract each other apart? Random laws and bodies, pulled off under a given approach. `ADHESION_PULLS` (12) chooses how many.
 
 use super::adhesion_population::law;
+use crate::common::fields::gap;
 use crate::common::sticky::{ball, elastic};
 use crate::common::{Draws, from_environment};
 use viscocontact::adhesion::ExponentialAttraction;
@@ -8,9 +9,7 @@ use viscocontact::prelude::*;
 
 /// Whether the bodies are apart, from the fields and the law.
 fn is_apart(contact: &ViscoelasticContact, energy: impl Fn(f64) -> f64) -> bool {
-    let mut gap = vec![0.0; contact.grid().len()];
-    contact.fields().gap_into(&mut gap).unwrap();
-    let narrowest = gap.into_iter().fold(f64::INFINITY, f64::min).max(0.0);
+    let narrowest = gap(contact.fields()).into_iter().fold(f64::INFINITY, f64::min).max(0.0);
     contact.pressure().iter().all(|p| *p == 0.0) && energy(narrowest) <= 0.01 * energy(0.0)
 }
 

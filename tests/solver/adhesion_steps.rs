@@ -1,5 +1,6 @@
 //! Does the length of steps change a state of surfaces that attract each other? Elastic bodies: no; creeping ones: by an order in time.
 
+use crate::common::fields::traction;
 use crate::common::sticky::{ball, elastic};
 use viscocontact::adhesion::ExponentialAttraction;
 use viscocontact::geometry::Sum;
@@ -24,9 +25,7 @@ fn end(material: Material, count: u32) -> Vec<f64> {
         let approach = touch - 0.3 + 1.2 * course - 0.5 * (f64::from(k) / f64::from(count) - 1.0).max(0.0);
         contact.step(1.0 / f64::from(count), Load::approach(approach)).unwrap();
     }
-    let mut traction = vec![0.0; contact.grid().len()];
-    contact.fields().traction_into(&mut traction).unwrap();
-    traction
+    traction(contact.fields())
 }
 
 /// Greatest difference of two tractions, over the greatest traction of the law.

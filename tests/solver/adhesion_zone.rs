@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+use crate::common::fields::traction;
 use crate::common::sticky::{ball, elastic};
 use crate::common::{contact_of, figures};
 use viscocontact::Special;
@@ -113,8 +114,7 @@ fn net_traction_is_shown_beside_the_pressure() {
     contact.step(1.0, Load::approach(1.0)).unwrap();
     assert_eq!(Field::of(&contact), Field::ALL);
     let profile = contact.fields().profile(Axis::X1, 0.0).unwrap();
-    let mut traction = vec![0.0; contact.grid().len()];
-    contact.fields().traction_into(&mut traction).unwrap();
+    let mut traction = traction(contact.fields());
     assert!((0..32).all(|i| profile.traction[i] == traction[32 * i + 16]));
     assert!(profile.pressure.iter().all(|p| *p >= 0.0) && profile.traction.iter().any(|q| *q < -0.1));
     let [net, wall] = [Map::traction(&contact).unwrap(), Map::pressure(&contact).unwrap()];

@@ -1,5 +1,6 @@
 //! The conditions of contact, and scenes in which they are hard to keep.
 
+use crate::common::fields::gap;
 use crate::common::{StepLoadedSphere, builder_of, contact_of, figures, maxwell};
 use viscocontact::contact::BodyState;
 use viscocontact::geometry::Sum;
@@ -25,8 +26,7 @@ pub(super) fn assert_contact_conditions(
     moved: f64,
     name: &str,
 ) {
-    let mut gap = vec![0.0; contact.grid().len()];
-    contact.fields().gap_into(&mut gap).unwrap();
+    let gap = gap(contact.fields());
     let cells = contact.contact_cells().max(1) as f64;
     let (mut closed, mut scale) = (0.0, 0.0);
     for ((&p, &h), &u) in contact.pressure().iter().zip(&gap).zip(contact.fields().displacement()) {

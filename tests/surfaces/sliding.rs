@@ -7,9 +7,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use crate::common::builder_of;
+use crate::common::fields::gap;
 use crate::common::refused::{not_covered, refused};
+use crate::io::numbers_of;
 use viscocontact::adhesion::ExponentialAttraction;
 use viscocontact::contact::Builder;
+use viscocontact::output::Format;
 use viscocontact::prelude::*;
 use viscocontact::rheology::TimeTemperature;
 use viscocontact::sliding::SlidingSweep;
@@ -70,29 +73,6 @@ fn full_contact_resists_wave_by_wave() {
     }
 }
 
-/// At rest the contact is on the relaxed body, and at a great speed on the elastic one at once, without friction.
-#[test]
-fn slow_and_fast_motions_are_elastic() {
-    let mut sliding = wavy(32);
-    let velocities = [(0.0, 10e-6), (1e12, 1e-6)];
-    for load in [Load::force(40.0), Load::approach(-1e-4)] {
-        for (speed, compliance) in velocities {
-            let report = sliding.at([0.61 * speed, 0.79 * speed], load).unwrap();
-            let contact = sliding.fields();
-            let body = Material::incompressible(Elastic::new(1.0 / compliance).unwrap());
-            let mut elastic = on_waves(32, body).build().unwrap();
-            elastic.step(0.0, load).unwrap();
-            assert!((report.force / elastic.force() - 1.0).abs() < 1e-7, "{load} {speed}");
-            assert!((report.approach - elastic.approach()).abs() < 1e-11, "{load} {speed}");
-            let most = contact.max_pressure();
-            let differ =
-                contact.pressure().iter().zip(elastic.pressure()).map(|(p, q)| (p - q).abs()).fold(0.0, f64::max);
-            assert!(differ < 1e-6 * most, "{load} {speed}: {differ} of {most}");
-            assert!(report.friction().abs() < 1e-8);
-        }
-    }
-}
-
 /// An eccentric force on a blunt body that tilts freely: at rest all that is read of the steady state are the readings of the elastic contact with the relaxed body,
 /// and in motion load and moments balance, and the mirrored motion under the mirrored force is the mirror image.
 #[test]
@@ -108,23 +88,17 @@ fn a_steady_state_is_read_like_a_contact() {
     sliding.at([0.0; 2], load).unwrap();
     let mut still = builder(Material::incompressible(Elastic::new(1e5).unwrap())).build().unwrap();
     still.step(0.0, load).unwrap();
-    let gap = |contact: Fields<'_>| {
-        let mut gap = vec![0.0; grid.len()];
-        contact.gap_into(&mut gap).unwrap();
-        gap
-    };
     let readings = |contact: Fields<'_>| -> Vec<(&'static str, Vec<f64>)> {
         let (patches, profile) = (contact.patches().unwrap(), contact.profile(Axis::X2, 0.1).unwrap());
         let stress = contact.stress().unwrap().at(&[[0.0, 0.0, 0.1], [0.1, 0.2, 0.3]]).unwrap();
-        let file = crate::common::Temporary::file("steady_gap.npy");
-        viscocontact::output::write_field_npy(&*file, contact, viscocontact::output::Field::Gap).unwrap();
-        let bytes = std::fs::read(&*file).unwrap();
-        let numbers = bytes[bytes.len() - 8 * grid.len()..].chunks(8);
+        let (folder, metadata) = (crate::common::Temporary::folder("steady-gap"), Metadata::new("steady"));
+        let series = FrameSeries::create(&*folder, Format::Npz, &metadata, contact, &[Field::Gap], Earlier::Refuse);
+        let file = series.unwrap().record(contact).unwrap();
         vec![
             ("pressure", contact.pressure().to_vec()),
             ("displacement", contact.displacement().to_vec()),
             ("gap", gap(contact)),
-            ("gap of a file", numbers.map(|own| f64::from_le_bytes(own.try_into().unwrap())).collect()),
+            ("gap of a file", numbers_of(&file, "gap")),
             ("approach", vec![contact.approach()]),
             ("tilt", contact.tilt().to_vec()),
             ("force", vec![contact.force()]),

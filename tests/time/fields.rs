@@ -12,6 +12,7 @@ use crate::common::random_histories::{Control, FromSmallLoad};
 use crate::common::{
     Draws, Features, RADIUS, Ratios, Scene, Temporary, builder_of, figures, from_environment, maxwell, sphere_on,
 };
+use crate::io::numbers_of;
 
 fn ball() -> ViscoelasticContact {
     sphere_on(Grid::square(32, 4.0e-3).unwrap(), maxwell(), Settings::default())
@@ -500,18 +501,11 @@ fn fields_of_contacts_that_shrink_are_found_by_graded_steps() {
     );
 }
 
-/// The numbers of a field in an archive of NumPy.
-fn numbers_of(path: &std::path::Path, name: &str) -> Vec<f64> {
-    let (mut archive, mut bytes) = (zip::ZipArchive::new(std::fs::File::open(path).unwrap()).unwrap(), Vec::new());
-    std::io::Read::read_to_end(&mut archive.by_name(&format!("{name}.npy")).unwrap(), &mut bytes).unwrap();
-    npyz::NpyFile::new(&bytes[..]).unwrap().into_vec().unwrap()
-}
-
-/// States within steps, frames, maps and histories of random scenes have the field that was asked for, bitwise where it is written.
+/// States within steps, frames and maps of random scenes have the field that was asked for, bitwise where it is written.
 #[test]
 fn what_follows_a_run_has_its_fields() {
     use viscocontact::output::{Earlier, Field, Format, FrameSeries, Metadata};
-    use viscocontact::plot::{History, HistoryColumn, Map};
+    use viscocontact::plot::Map;
 
     let (accuracy, mut followed) = (1e-2, 0);
     for number in 0..from_environment("FIELD_FOLLOWED", 8) {
@@ -523,7 +517,7 @@ fn what_follows_a_run_has_its_fields() {
         let load: &dyn LoadHistory = if number % 8 > 3 { &turning } else { scene.load() };
         let exact = (scene.body.creep_ratio() <= 100.0).then(|| truth(&scene, load, &asked)).flatten();
         let Some((fields, greatest)) = exact else { continue };
-        let (mut contact, folder, mut history) = (scene.contact(1e-6), Temporary::folder("followed"), History::new());
+        let (mut contact, folder) = (scene.contact(1e-6), Temporary::folder("followed"));
         let (metadata, wanted) = (Metadata::new("fields"), [Field::Pressure]);
         let mut series =
             FrameSeries::create(&*folder, Format::Npz, &metadata, &contact, &wanted, Earlier::Refuse).unwrap();
@@ -531,15 +525,13 @@ fn what_follows_a_run_has_its_fields() {
         let mut run = run.sample_at(&asked[..]).unwrap().fields_to(accuracy).unwrap();
         while run.next_step().unwrap().is_some() {
             for sample in run.samples().map(Result::unwrap).filter(|sample| sample.is_asked_for()) {
-                let (shown, contact, time) = (sample.fields(), sample.contact(), sample.contact().time());
+                let (shown, time) = (sample.fields(), sample.contact().time());
                 let exact = &fields.iter().find(|field| field.time == time).unwrap().pressure;
                 let frame = numbers_of(&series.record(shown).unwrap(), "pressure");
-                history.record(contact);
                 // cells out of contact are blank in a map
                 let map = Map::pressure(shown).unwrap();
                 let drawn: Vec<f64> = map.values().iter().map(|p| if p.is_nan() { 0.0 } else { *p }).collect();
                 assert!(frame == shown.pressure() && drawn == frame, "{name}");
-                assert_eq!(history.column(HistoryColumn::MaxPressure).last(), Some(&contact.fields().max_pressure()));
                 let size = exact.iter().sum::<f64>().max(0.01 * greatest / scene.grid().cell_area());
                 let within = run.fields_within_step(time).unwrap();
                 for field in [&frame[..], within.fields().pressure()] {

@@ -49,6 +49,8 @@ fn contacts_on_states_come_back_to_the_last_bit() {
         advanced(&mut contact, 0..8);
         let mut start = contact.snapshot();
         contact.save(&path).unwrap();
+        let bytes = contact.to_bytes().unwrap();
+        assert!(std::fs::read(&path).unwrap() == bytes);
         advanced(&mut contact, 8..20);
         let end = seen(&contact);
         contact.restore(&start).unwrap();
@@ -58,9 +60,13 @@ fn contacts_on_states_come_back_to_the_last_bit() {
         assert_eq!(format!("{start:?}"), end.0);
         let mut other = new();
         says(&other.restore(&start).unwrap_err(), "other_contact", "the snapshot was taken");
-        other.resume(&path).unwrap();
-        advanced(&mut other, 8..20);
-        assert_eq!(seen(&other), end);
+        assert_eq!(other.resume_bytes(b"other").unwrap_err().code(), "checkpoint_foreign");
+        for from_bytes in [false, true] {
+            let again = if from_bytes { other.resume_bytes(&bytes) } else { other.resume(&path) };
+            again.unwrap();
+            advanced(&mut other, 8..20);
+            assert_eq!(seen(&other), end);
+        }
     }
     // of another coefficient, or of none
     for mut wrong in [kept::contact(0.5), kept::smooth().with_linear_steps()] {
@@ -140,10 +146,10 @@ fn states_are_resumed_by_the_same_contact_only() {
     assert!((again.approach() / contact.approach() - 1.0).abs() < 1e-6, "{} {}", again.approach(), contact.approach());
 }
 
-/// States read from a file carry the same contacts, and the same pressures.
+/// States read from a file or from bytes carry the same contacts, and the same pressures.
 #[test]
 fn states_in_files_are_the_states() {
-    use viscocontact::output::{Metadata, read_states, write_states};
+    use viscocontact::output::{Metadata, read_states, states_from_bytes, states_to_bytes, write_states};
 
     let folder = Temporary::folder("states-npz");
     let path = folder.join("states.npz");
@@ -151,7 +157,8 @@ fn states_in_files_are_the_states() {
         let states = rough_states(kept);
         write_states(&path, &states, &Metadata::new("rough").note("seed", "0")).unwrap();
         let read = read_states(&path).unwrap();
-        assert_eq!(read.states(), states.states());
+        let in_memory = states_from_bytes(&states_to_bytes(&states).unwrap()).unwrap();
+        assert!(read.states() == states.states() && in_memory.states() == states.states());
         assert_eq!(read.interpolation_error(), states.interpolation_error());
         assert_eq!(read.grid(), states.grid());
         let [mut one, mut other] = [&states, &read].map(|states| StatesContact::new(states, &material()).unwrap());
@@ -175,22 +182,20 @@ fn states_in_files_are_the_states() {
     write_states(&path, &states, &Metadata::default()).unwrap();
     assert_eq!(StatesContact::new(&read_states(&path).unwrap(), &material()).unwrap_err().kind(), ErrorKind::Value);
     assert_eq!(read_states(folder.join("absent.npz")).unwrap_err().kind(), ErrorKind::File);
+    assert_eq!(states_from_bytes(b"other").unwrap_err().kind(), ErrorKind::File);
 }
 
-/// Tables and charts take contacts on elastic states, with what acts along the surface; what these do not have is empty.
+/// Tables take contacts on elastic states, with what acts along the surface; what these do not have is empty.
 #[test]
-fn histories_of_states_are_written_and_drawn() {
-    use viscocontact::plot::{History, HistoryColumn};
-
+fn histories_of_states_are_written() {
     let folder = Temporary::folder("states-history");
-    let (path, mut contact, mut history) = (folder.join("history.csv"), kept::contact(0.4), History::new());
+    let (path, mut contact) = (folder.join("history.csv"), kept::contact(0.4));
     let mut table =
         CsvHistory::create(&path, &Metadata::new("rubbed"), &contact, &["level [m2]"], Earlier::Refuse).unwrap();
     for _ in 0..3 {
         let report = contact.step_sheared(0.1, Load::force(1.0), Load::force(0.3)).unwrap();
         assert_eq!(report.dt, 0.1);
         table.record(&contact, &report, &[contact.level()]).unwrap();
-        history.record(&contact);
     }
     let smooth = kept::smooth();
     let report = smooth.report(0.0, Load::force(0.0));
@@ -216,9 +221,6 @@ fn histories_of_states_are_written_and_drawn() {
     }
     assert!(value(1, "displacement along [m]") < value(3, "displacement along [m]"));
     assert_eq!(field(3, "max pressure [Pa]"), "");
-    assert_eq!(history.column(HistoryColumn::ContactArea).last(), Some(&contact.contact_area()));
-    history.chart(HistoryColumn::ContactArea).unwrap();
-    assert!(matches!(history.chart(HistoryColumn::MaxPressure), Err(Error::WrongLength { .. })));
 }
 
 /// Between the states of a table whose stiffnesses contradict its depths, the depth rises nevertheless.

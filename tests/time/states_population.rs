@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use crate::common::random_bodies::{Body, body_of_twenty_decades, random_body};
-use crate::common::random_histories::{Control, RandomHistory, parting_history, random_history};
+use crate::common::random_histories::{Control, RandomHistory, parting_history, random_history, size};
 use crate::common::random_returns::{returning_body, returning_history};
 use crate::common::{Draws, Ratios, from_environment};
 use viscocontact::prelude::*;
@@ -24,16 +24,6 @@ struct Scene {
     tolerance: f64,
     /// Times at which the history is not smooth, or a force begins or ends.
     corners: Vec<f64>,
-}
-
-/// Force, approach or drive.
-fn size(load: Load) -> f64 {
-    match load {
-        Load::Force { normal: size, .. } | Load::Approach { approach: size, .. } | Load::Spring { drive: size, .. } => {
-            size
-        }
-        _ => unreachable!("no other load"),
-    }
 }
 
 impl Scene {

@@ -68,8 +68,8 @@ impl ViscoelasticContact {
     }
 
     /// Goes back to a state, with the indenter where it was then: the steps that follow are the same as they were,
-    /// bitwise. A run of adaptive steps ([`ViscoelasticContact::follow`]) begins anew, with steps of its own.
-    /// Allocates nothing while the region that is computed stays the same.
+    /// bitwise. A run of adaptive steps ([`Contact::follow`](crate::run::Contact::follow)) begins anew, with steps of its
+    /// own. Allocates nothing while the region that is computed stays the same.
     ///
     /// # Errors
     /// If the snapshot was made of another contact; a contact and its clones may exchange theirs.

@@ -1,4 +1,4 @@
-//! HistoryColumn orders of convergence on the one-dimensional foundation.
+//! Observed orders of convergence on the one-dimensional foundation.
 
 use std::f64::consts::PI;
 

@@ -8,9 +8,6 @@ use proptest::strategy::Union;
 use super::{built, history};
 use crate::load::{FnHistory, Load, LoadHistory, Periodic, PiecewiseLinear, Ramp, Sinusoid, StepLoad, Tilt};
 
-/// A load history of any type.
-pub type AnyHistory = Arc<dyn LoadHistory>;
-
 /// Loads of every kind: forces up to `force` \[N\], approaches within `depth` \[m\], springs about as stiff as both
 /// suggest, tilts within `tilt` \[rad\], load points within `reach` of the origin \[m\].
 pub fn loads(force: f64, depth: f64, tilt: f64, reach: f64) -> impl Strategy<Value = Load> {
@@ -37,7 +34,7 @@ pub fn loads(force: f64, depth: f64, tilt: f64, reach: f64) -> impl Strategy<Val
 
 /// Histories of a force up to `force` \[N\] on a body that does not tilt, varying over `duration` \[s\]: constant,
 /// ramps, tables with corners and jumps, oscillations, closures with and without corners.
-pub fn histories(force: f64, duration: f64) -> impl Strategy<Value = AnyHistory> {
+pub fn histories(force: f64, duration: f64) -> impl Strategy<Value = Arc<dyn LoadHistory>> {
     let load = move || (0.0..1.0_f64).prop_map(move |part| Load::force(part * force));
     let time = move || (0.05..1.0_f64).prop_map(move |part| part * duration);
     let frequency = move || (0.5..3.0_f64).prop_map(move |cycles| cycles / duration);

@@ -23,15 +23,8 @@ use crate::rheology::{
 mod histories;
 mod scenarios;
 
-pub use histories::{AnyHistory, histories, loads};
+pub use histories::{histories, loads};
 pub use scenarios::{Scenario, scenarios};
-
-/// A rheology of any type.
-pub type AnyRheology = Arc<dyn Rheology>;
-/// A geometry of any type.
-pub type AnyGeometry = Arc<dyn Geometry>;
-/// An attraction of any type.
-pub type AnyAttraction = Arc<dyn Attraction>;
 
 /// Values within a decade of `scale`, in its unit.
 fn around(scale: f64) -> impl Strategy<Value = f64> + Clone {
@@ -52,21 +45,21 @@ where
 
 /// Models of a trait, by their numbers and constructor.
 macro_rules! models {
-    ($($name:ident: $model:ident as $any:ty,)*) => {$(
+    ($($name:ident: $model:ident,)*) => {$(
         fn $name<I: std::fmt::Debug + 'static, M: $model + 'static>(
             numbers: impl Strategy<Value = I> + 'static,
             build: impl Fn(I) -> Result<M> + 'static,
-        ) -> BoxedStrategy<$any> {
-            built(numbers, move |numbers| Ok(Arc::new(build(numbers)?) as $any))
+        ) -> BoxedStrategy<Arc<dyn $model>> {
+            built(numbers, move |numbers| Ok(Arc::new(build(numbers)?) as Arc<dyn $model>))
         }
     )*};
 }
 models! {
-    body: Rheology as AnyRheology, shape: Geometry as AnyGeometry, law: Attraction as AnyAttraction, history: LoadHistory as AnyHistory,
+    body: Rheology, shape: Geometry, law: Attraction, history: LoadHistory,
 }
 
 /// Every rheology of the crate that has a formula, with moduli around `modulus` \[Pa\] and times around `time` \[s\].
-pub fn rheologies(modulus: f64, time: f64) -> impl Strategy<Value = AnyRheology> {
+pub fn rheologies(modulus: f64, time: f64) -> impl Strategy<Value = Arc<dyn Rheology>> {
     let (g, t, exponent) = (around(modulus), around(time), 0.05..0.95_f64);
     let eta = around(modulus * time);
     let compliance = around(1.0 / modulus);
@@ -123,7 +116,7 @@ pub fn spectra(modulus: f64, time: f64) -> impl Strategy<Value = CreepSpectrum> 
 }
 
 /// Every attraction of the crate, with works of separation around `work` \[J/m²\] and ranges around `range` \[m\].
-pub fn attractions(work: f64, range: f64) -> impl Strategy<Value = AnyAttraction> {
+pub fn attractions(work: f64, range: f64) -> impl Strategy<Value = Arc<dyn Attraction>> {
     let scales = (around(work), around(range));
     let width = (around(work), around(range), 0.01..2.0_f64);
     Union::new([
@@ -136,7 +129,7 @@ pub fn attractions(work: f64, range: f64) -> impl Strategy<Value = AnyAttraction
 
 /// Indenters with a formula, alone, superposed, shifted and repeated, that touch within `length` \[m\] of the origin.
 /// At that distance their gap is up to about a tenth of it.
-pub fn geometries(length: f64) -> impl Strategy<Value = AnyGeometry> {
+pub fn geometries(length: f64) -> impl Strategy<Value = Arc<dyn Geometry>> {
     let radius = around(5.0 * length);
     let wave = (around(1e-3 * length), (0.3..3.0_f64).prop_map(move |part| part * length));
     let face = (0.4..1.0_f64).prop_map(move |part| part * length);

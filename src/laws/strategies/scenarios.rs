@@ -5,10 +5,10 @@ use std::sync::Arc;
 use proptest::prelude::*;
 use proptest::strategy::Union;
 
-use super::{AnyGeometry, around, built, shape, spectra};
+use super::{around, built, shape, spectra};
 use crate::contact::{Builder, Settings};
 use crate::error::Result;
-use crate::geometry::{Cone, Ellipsoid, FlatPunch, Shifted, Sphere, Sum, Wavy};
+use crate::geometry::{Cone, Ellipsoid, FlatPunch, Geometry, Shifted, Sphere, Sum, Wavy};
 use crate::load::Load;
 use crate::rheology::{CreepSpectrum, Material};
 use crate::{Grid, ViscoelasticContact};
@@ -32,7 +32,7 @@ pub struct Scenario {
     /// The grid.
     pub grid: Grid,
     /// The indenter.
-    pub shape: AnyGeometry,
+    pub shape: Arc<dyn Geometry>,
     /// Creep compliance J(t) of an incompressible body.
     pub creep: CreepSpectrum,
     /// The length of each step \[s\], and the load at its end.
@@ -70,7 +70,7 @@ const MAX_RADIUS: f64 = 0.35;
 
 /// Indenters with a contact radius of at most about `reach` \[m\]. The force is the one under which a sphere of radius
 /// `radius` \[m\] has the contact radius `reach`.
-fn indenters(radius: f64, reach: f64) -> BoxedStrategy<AnyGeometry> {
+fn indenters(radius: f64, reach: f64) -> BoxedStrategy<Arc<dyn Geometry>> {
     let share = 0.4..1.0_f64;
     Union::new([
         shape(share.clone(), move |part| Sphere::new(part * radius)),

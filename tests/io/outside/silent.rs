@@ -198,10 +198,8 @@ const SCENES: &[Scene] = &[
 ("a rough surface on patches of two cells", || rough(32), "fewer than 8 cells across"),
 ("a ring two cells wide", ring, "fewer than 8 cells across"),
 ("ridges three cells wide", ridges, "fewer than 8 cells across"),
-("a rough surface of three cells in its shortest wave", || rough(24), "fewer than 4 cells"),
 ("contact at the edge of the grid", || pressed(builder_on(grid(), zener()), Load::force(30.0)), "enlarge the grid"),
 ("contact beside the edge of the grid", || pressed(builder_on(grid(), Material::incompressible(Elastic::new(1.0e6)?)), Load::approach(0.35e-3)), "enlarge the grid"),
-("a wave of another period", || periodic(&Wavy::new(1.0e-6, 0.4e-3)?, 48, Load::force(1.0e-3)), "make the grid as long"),
 // shapes and layers
 ("heights far from zero", || pressed(builder_of(&far_from_zero(), grid(), zener()), Load::force(0.1)), "so far are heights from 0"),
 ("heights far from zero on states",
@@ -209,14 +207,7 @@ const SCENES: &[Scene] = &[
         let states = Sweep::new(grid(), &far_from_zero()).run(Reach::Level(1.0e-7))?;
         StatesContact::new(&states, &zener())?.step(0.0, Load::force(0.05)).map(told)
     }, "so far are heights from 0"),
-("a steep cone", || pressed(builder_of(&Cone::new(0.8)?, grid(), zener()), Load::approach(1.0e-3)), "check that lengths are in m"),
-("a radius in mm", || pressed(builder_of(&Sphere::new(1.0e-3)?, grid(), zener()), Load::approach(0.8e-3)), "check that lengths are in m"),
 ("sides in µm", || pressed(builder_of(&sphere(), Grid::square(48, 4.0e3)?, zener()), Load::force(0.1)), "refine the mesh"),
-("a layer pressed in by half of its thickness",
-    || {
-        let kernel = InfluenceKernel::layer(&grid(), Layer::bonded_to_rigid(60.0e-6, 0.5)?)?;
-        pressed(builder_on(grid(), Material::incompressible(Elastic::new(1.0e6)?)).kernel(kernel), Load::approach(30.0e-6))
-    }, "check the thickness"),
 ("a layer of another Poisson's ratio than its material",
     || {
         let kernel = InfluenceKernel::layer(&grid(), Layer::bonded_to_rigid(60.0e-6, 0.3)?)?;

@@ -1,32 +1,17 @@
 //! Elastic contacts of random scenes: against the dense reference, against a stepper on an elastic body, and cold beside warm.
 
-use super::distance;
 use super::reference::Reference;
 use super::scenes::{Body, Scene};
+use super::{distance, errors};
 use crate::common::any_scene::shape_on_body;
+use crate::common::fields::gap;
 use crate::common::{Draws, Ratios, from_environment};
-use viscocontact::fields::Fields;
 use viscocontact::prelude::*;
 
 /// The elastic contact of a scene, of compliance 1/`modulus`.
 fn elastic(scene: &Scene, modulus: f64, settings: Settings) -> ElasticContact {
     let builder = ElasticContact::builder(scene.grid.clone()).modulus(modulus).settings(settings);
     scene.shapes.iter().fold(builder, |builder, shape| builder.another_body(shape)).build().unwrap()
-}
-
-/// Pressure, forces and motions of a contact beside those of the reference, over their sizes.
-fn errors(contact: Fields<'_>, reference: &Reference) -> [f64; 3] {
-    let mut errors = [distance(contact.pressure(), &reference.pressure), 0.0, 0.0];
-    for (body, &motion) in reference.motions.iter().enumerate() {
-        let (state, force) = (contact.body(body).unwrap(), reference.force(body));
-        errors[1] += (state.force - force).abs() / reference.total_force().max(1e-12);
-        if motion[0].is_finite() && force > 0.0 {
-            let size = reference.deepest();
-            errors[2] += (state.approach - motion[0]).abs() / size;
-            errors[2] += 1e-3 * (state.tilt[0] - motion[1]).abs().max((state.tilt[1] - motion[2]).abs()) / size;
-        }
-    }
-    errors
 }
 
 /// The load of a spring whose far end is where it carries the force of a body that rests so.
@@ -134,8 +119,7 @@ fn elastic_contacts_are_jumps_of_an_elastic_body() {
             assert!((found.approach - step.approach).abs() <= 1e-7 * step.approach.abs(), "{name}");
             assert!(found.convolutions <= step.convolutions + 2, "{name}");
             let [own, other] = [contact.fields(), stepper.fields()].map(|fields| {
-                let mut gap = vec![0.0; grid.len()];
-                fields.gap_into(&mut gap).unwrap();
+                let mut gap = gap(fields);
                 gap.retain(|h| h.is_finite());
                 gap
             });

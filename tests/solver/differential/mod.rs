@@ -9,6 +9,7 @@ use super::conditions::{assert_contact_conditions, moved};
 use crate::common::{Ratios, from_environment};
 use reference::Reference;
 use scenes::Scene;
+use viscocontact::fields::Fields;
 use viscocontact::prelude::*;
 
 /// Steps of one scene.
@@ -134,6 +135,21 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
     if sum > 0.0 { difference / sum } else { difference }
 }
 
+/// Pressure, forces and motions of a contact beside those of the reference, over their sizes.
+fn errors(contact: Fields<'_>, reference: &Reference) -> [f64; 3] {
+    let mut errors = [distance(contact.pressure(), &reference.pressure), 0.0, 0.0];
+    for (body, &motion) in reference.motions.iter().enumerate() {
+        let (state, force) = (contact.body(body).unwrap(), reference.force(body));
+        errors[1] += (state.force - force).abs() / reference.total_force().max(1e-12);
+        if motion[0].is_finite() && force > 0.0 {
+            let size = reference.deepest();
+            errors[2] += (state.approach - motion[0]).abs() / size;
+            errors[2] += 1e-3 * (state.tilt[0] - motion[1]).abs().max((state.tilt[1] - motion[2]).abs()) / size;
+        }
+    }
+    errors
+}
+
 #[test]
 fn a_dense_reference_agrees() {
     agrees_with_a_dense_reference(TimeRule::Exponential);
@@ -171,17 +187,7 @@ fn agrees_with_a_dense_reference(time_rule: TimeRule) {
                 break; // what follows would start from elsewhere
             }
             steps += 1;
-            let mut errors = [distance(contact.pressure(), &reference.pressure), 0.0, 0.0];
-            for (body, &motion) in reference.motions.iter().enumerate() {
-                let state = contact.fields().body(body).unwrap();
-                let force = reference.force(body);
-                errors[1] += (state.force - force).abs() / reference.total_force().max(1e-12);
-                if motion[0].is_finite() && force > 0.0 {
-                    let size = reference.deepest();
-                    errors[2] += (state.approach - motion[0]).abs() / size;
-                    errors[2] += 1e-3 * (state.tilt[0] - motion[1]).abs().max((state.tilt[1] - motion[2]).abs()) / size;
-                }
-            }
+            let errors = errors(contact.fields(), &reference);
             if errors.iter().any(|e| *e > 1e-6) {
                 println!("{} step {step}: {errors:?} {dt:.2e} {loads:?} {:?}", scene.name, scene.rheology);
             }

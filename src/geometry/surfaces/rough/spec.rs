@@ -37,11 +37,11 @@ pub struct RoughSpec {
     /// Wavelength \[m\] above which the spectrum is constant (default: `longest`, a spectrum without plateau).
     roll_off: f64, with_roll_off;
     /// Shortest wavelength \[m\], at least two cells of the grid.
-    shortest: f64, with_shortest;
+    shortest: f64;
     /// Anisotropy of the spectrum (default: isotropic).
     anisotropy: Anisotropy, with_anisotropy;
     /// Roughness.
-    roughness: Roughness, with_roughness;
+    roughness: Roughness;
     /// Seed of the random numbers (default: 0): the same seed and lengths give the same surface on every mesh that
     /// resolves it.
     seed: u64, with_seed;
