@@ -2,7 +2,7 @@
 
 use crate::Axis;
 use crate::equilibrium::Held;
-use crate::error::{Convergence, Error, Result, StepError, coverage, finite};
+use crate::error::{Error, Refusal, Result, coverage, finite};
 use crate::fields::Fields;
 use crate::linalg::solve_normal_equations;
 use crate::observe::profile::line_through;
@@ -19,6 +19,15 @@ const GRADIENT_TOLERANCE: f64 = 1e-12;
 struct Punches {
     fields: [Vec<f64>; 3],
     matrix: [[f64; 3]; 3],
+}
+
+/// The error of a motion under which no pressure was found.
+fn undetermined(iterations: usize, residual: f64, tolerance: f64) -> Error {
+    let what = format!(
+        "the body hardly determines the pressure under a rigid motion (residual {residual:.2e} after {iterations} \
+        iterations, above {tolerance:e})"
+    );
+    Refusal::search("stiffness_not_converged", what, ": check its influence coefficients").into()
 }
 
 impl Fields<'_> {
@@ -134,13 +143,10 @@ impl Fields<'_> {
         let touches = |k: usize| current.solution.pressure[k] > 0.0;
         let (mut fields, mut matrix) = ([const { Vec::new() }; 3], [[0.0; 3]; 3]);
         for j in (0..3).filter(|j| *j == 0 || tilts(j - 1).is_some()) {
-            let q = kernel.rows().or_loss(|| Ok(flat_punch(kernel, touches, |k| motion(j, k), tolerance)))?.map_err(
-                |(iterations, residual)| {
-                    let (time, dt) = (self.about.time.unwrap_or(0.0), 0.0);
-                    let convergence = Convergence::new(Vec::new(), tolerance, true).into();
-                    Error::Step(StepError::NotConverged { time, dt, iterations, residual, tolerance, convergence })
-                },
-            )?;
+            let q = kernel
+                .rows()
+                .or_loss(|| Ok(flat_punch(kernel, touches, |k| motion(j, k), tolerance)))?
+                .map_err(|(iterations, residual)| undetermined(iterations, residual, tolerance))?;
             let area = region.cell_area();
             matrix[0][j] = rows.sum(&q) * area;
             for i in (1..3).filter(|i| tilts(i - 1).is_some()) {
