@@ -197,7 +197,7 @@ pub fn look_along(
     }
     let budget = run.error_budget();
     let mesh = budget.mesh.map(|mesh| mesh.approach);
-    known("error budget", budget.time.into_iter().chain(budget.pressure).chain(mesh).chain([budget.solver]))
+    known("error budget", budget.time.into_iter().chain(mesh).chain([budget.solver]))
 }
 
 fn follow(source: &mut Source) -> Verdict {
