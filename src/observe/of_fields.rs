@@ -2,11 +2,11 @@
 
 use crate::Axis;
 use crate::equilibrium::Held;
-use crate::error::{Error, Refusal, Result, coverage, finite};
+use crate::error::{Error, Refusal, Result, coverage};
 use crate::fields::Fields;
 use crate::linalg::solve_normal_equations;
 use crate::observe::profile::line_through;
-use crate::observe::{Asymmetry, Distribution, LineProfile, Patches};
+use crate::observe::{LineProfile, Patches};
 use crate::solver::{FLAT_PUNCH_TOLERANCE, flat_punch};
 
 /// Share of a motion, by its square, that is taken for dependent on the others: of a body that tilts on two cells.
@@ -158,46 +158,6 @@ impl Fields<'_> {
         Ok(Punches { fields, matrix })
     }
 
-    /// The distribution of the pressure \[Pa\] over all cells of the grid, in `bins` between 0 and the largest
-    /// pressure. [`Distribution::share_at_zero`] is the share out of contact.
-    ///
-    /// # Errors
-    /// If `bins` is 0 or more than a million.
-    pub fn pressure_distribution(&self, bins: usize) -> Result<Distribution> {
-        self.covers(coverage::DISTRIBUTION)?;
-        Distribution::new(self.pressure().iter().copied().filter(|p| *p > 0.0), self.pressure().len(), bins)
-    }
-
-    /// The distribution of the gap \[m\] over all cells where the initial gap is finite, in `bins` between 0 and the
-    /// maximum gap. [`Distribution::share_at_zero`] is the share in contact, including cells that touch without
-    /// pressure.
-    ///
-    /// ```
-    /// use viscocontact::prelude::*;
-    ///
-    /// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
-    ///     .geometry(&Sphere::new(10.0e-3)?)
-    ///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
-    ///     .build()?;
-    /// contact.step(0.0, Load::force(0.5))?;
-    /// let gaps = contact.fields().gap_distribution(20)?;
-    /// for (gap, density) in gaps.centers().zip(&gaps.density) {
-    ///     println!("{gap:.2e} m  {density:.3e} 1/m");
-    /// }
-    /// # Ok::<(), Error>(())
-    /// ```
-    ///
-    /// # Errors
-    /// If `bins` is 0 or more than a million, or there is no memory for the gap.
-    pub fn gap_distribution(&self, bins: usize) -> Result<Distribution> {
-        self.covers(coverage::DISTRIBUTION)?;
-        let gap = self.gap()?;
-        let touchable = gap.iter().filter(|h| h.is_finite()).count();
-        // a cell under pressure counts as gap 0
-        let open = gap.iter().zip(self.pressure()).filter(|(h, p)| h.is_finite() && **h > 0.0 && **p == 0.0);
-        Distribution::new(open.map(|(h, _)| *h), touchable, bins)
-    }
-
     /// Pressure, displacement, gap and net traction along the line of cells in the direction of `along` that contains
     /// the other coordinate `at` \[m\]; if `at` lies on the boundary of two lines, along the upper one. Nothing is
     /// interpolated:
@@ -247,32 +207,6 @@ impl Fields<'_> {
     pub fn patches(&self) -> Result<Patches> {
         self.covers(coverage::PATCHES)?;
         Patches::new(self.grid(), self.pressure(), self.kernel().periodic_axes())
-    }
-
-    /// Position and skewness of the contact relative to the point `about` \[m\], such as the lowest point of a roller;
-    /// `None` without contact. Several patches count as one contact. Where the bodies are periodic, each cell counts at
-    /// its periodic image nearest to the point, and the centre of pressure may lie beyond the grid.
-    ///
-    /// ```
-    /// use viscocontact::prelude::*;
-    ///
-    /// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
-    ///     .geometry(&Sphere::new(10.0e-3)?)
-    ///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
-    ///     .build()?;
-    /// assert_eq!(contact.fields().asymmetry([0.0; 2])?, None);
-    /// contact.step(0.0, Load::force(0.5))?;
-    /// let asymmetry = contact.fields().asymmetry([0.0; 2])?.expect("in contact");
-    /// assert!(asymmetry.skewness()[0].abs() < 1e-12);
-    /// # Ok::<(), Error>(())
-    /// ```
-    ///
-    /// # Errors
-    /// If a coordinate is not finite.
-    pub fn asymmetry(&self, about: [f64; 2]) -> Result<Option<Asymmetry>> {
-        self.covers(coverage::ASYMMETRY)?;
-        let about = [finite("point along x1", about[0])?, finite("point along x2", about[1])?];
-        Ok(Asymmetry::new(self.grid(), self.pressure(), self.kernel().periodic_axes(), about))
     }
 
     /// The values of a field along a line of cells, of all ranks.
