@@ -639,8 +639,6 @@ class Layer:
     def frictionless_on_rigid(thickness: float, nu: float) -> Layer: ...
     @staticmethod
     def bonded_to_half_space(thickness: float, nu: float, shear_ratio: float, base_nu: float) -> Layer: ...
-    @staticmethod
-    def bonded_to_material(thickness: float, layer: Material, base: Material) -> Layer: ...
     @property
     def thickness(self) -> float: ...
     @property
@@ -1143,7 +1141,6 @@ class SteadySliding:
         geometry: _GeometryLike,
         material: Material,
         *,
-        base: Material | None = None,
         modulus: Callable[[float], complex] | None = None,
         counter_motion: Literal["slides", "rolls"] | None = None,
         **options: Unpack[_Options],
