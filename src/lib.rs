@@ -128,7 +128,7 @@
 //! | `sliding` | [`sliding`] |
 //! | `states` | [`states`] |
 //! | `study` | [`study`] |
-//! | `stress` | [`observe::SubsurfaceStress`], [`contact::StressHistory`] |
+//! | `stress` | [`observe::SubsurfaceStress`] |
 //! | `surfaces` | [`geometry::HeightMap`], [`geometry::Rough`], [`geometry::SurfaceStatistics`] |
 //! | `temperature` | [`rheology::TimeTemperature`], [`rheology::TemperatureHistory`] |
 //! | `text` | [`input`] |

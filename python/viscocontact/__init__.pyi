@@ -105,7 +105,6 @@ __all__ = [
     "StatesContact",
     "SteadySliding",
     "StepReport",
-    "StressHistory",
     "Study",
     "SubsurfaceStress",
     "TemperatureHistory",
@@ -1232,12 +1231,6 @@ class SubsurfaceStress:
         title: str = "",
         notes: dict[str, Any] | None = None,
     ) -> None: ...
-
-@final
-class StressHistory:
-    def __new__(cls, contact: ViscoelasticContact, *, in_counter_body: bool = False) -> StressHistory: ...
-    def record(self, contact: ViscoelasticContact) -> None: ...
-    def stress(self, contact: ViscoelasticContact) -> SubsurfaceStress: ...
 
 @final
 class EnergyBalance:

@@ -86,8 +86,6 @@ not_covered! {
 
     // observations
     STRESS: "the stress below the surface", Ranks: ONE_PROCESS, Attraction: STRESS_OF_TRACTION;
-    STRESS_HISTORY: "a history of the stress",
-        Ranks: ONE_PROCESS, Attraction: STRESS_OF_TRACTION, FixedToIndenter: OTHER_FRAME;
     ENERGIES: "an energy balance", Ranks: ONE_PROCESS, FixedToIndenter: OTHER_FRAME;
     MESH_ERROR: "the error due to the mesh", Ranks: ONE_PROCESS, Attraction: "compute on a finer mesh, and compare";
     PATCHES: "the search for patches", Ranks: ONE_PROCESS;

@@ -14,7 +14,7 @@ mod violation;
 
 pub(crate) use checks::{
     LONGEST, count_within, exact_length, finite, in_order, least_length, length, missing, non_negative,
-    of_other_contact, other_contact, poisson_ratio, positive, within,
+    of_other_contact, poisson_ratio, positive, within,
 };
 pub use coverage::Special;
 pub use kind::ErrorKind;

@@ -5,5 +5,3 @@ pub(in crate::contact) mod accessors;
 pub(in crate::contact) mod energies;
 pub(crate) mod limits;
 pub(in crate::contact) mod report;
-#[cfg(feature = "stress")]
-pub(in crate::contact) mod stress;
