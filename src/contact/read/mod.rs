@@ -1,4 +1,4 @@
-//! Results of a contact: fields, scalars, observations, stress, energies, reports and warnings.
+//! Results of a contact: fields, scalars, observations, energies, reports and warnings.
 
 pub(in crate::contact) mod accessors;
 #[cfg(feature = "energies")]
