@@ -10,12 +10,7 @@ use crate::common::{Features, Ratios, Scene, Truth, from_environment};
 use viscocontact::prelude::*;
 
 const TOLERANCES: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
-const QUANTITIES: [&str; 4] = [
-    "approach or force",
-    "maximum pressure",
-    "central pressure",
-    "over the budget",
-];
+const QUANTITIES: [&str; 4] = ["approach or force", "maximum pressure", "central pressure", "over the budget"];
 /// A run of so many contact problems does not end.
 const MOST_PROBLEMS: u64 = 20_000;
 /// Steps of the finest run for the truth.

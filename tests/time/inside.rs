@@ -346,8 +346,7 @@ fn errors(inside: &Inside, tolerance: f64) -> Result<Errors, Box<dyn std::error:
         inside.scene.load()
     };
     let (until, solver) = (inside.scene.body.until, Settings::default().tolerance().min(0.01 * tolerance));
-    let Run { looks, steps, rejected, stated } =
-        run(inside.contact(solver), history, until, tolerance)?;
+    let Run { looks, steps, rejected, stated } = run(inside.contact(solver), history, until, tolerance)?;
     if std::env::var("INSIDE_TRACE").is_ok() {
         let name = &inside.scene.name;
         println!("{}problems {} rejected {rejected} {tolerance:.0e} {name}", inside.what, steps as u64 + rejected);

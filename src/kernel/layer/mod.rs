@@ -43,7 +43,8 @@ const SQUEEZED: f64 = 0.02;
 /// compliance, zero for an incompressible one.
 ///
 /// Layer and base creep by one function C(t). A base that is much stiffer than the layer, as steel below rubber, is
-/// rigid; one that creeps as the layer does is [`Layer::bonded_to_half_space`]. The layer's ν must equal the material's, and constant: the contact is refused with another one, with
+/// rigid; one that creeps as the layer does is a half-space ([`Layer::bonded_to_half_space`]). The layer's ν must equal
+/// the material's, and constant: the contact is refused with another one, with
 /// [`Material::elastic_bulk`](crate::rheology::Material::elastic_bulk), and with a counter body that deforms.
 ///
 /// A layer must be modelled where the contact radius is more than a tenth of its thickness: at a/h = 0.1 a bonded
