@@ -45,11 +45,13 @@ impl Scene {
         };
         let spacing = [draws.between(0.7, 1.4), draws.between(0.7, 1.4)];
         let creep = draw_creep(draws, periodic == [true; 2]);
+        let is_soft = draws.chance(0.3);
         let base = match draws.below(if number.is_multiple_of(2) { 1 } else { 5 }) {
             0 => Base::None,
             1 => Base::Rigid,
             2 => Base::Frictionless,
-            _ => Base::Body(draws.scale(0.05, 5.0)),
+            _ if is_soft => Base::Body(draws.scale(1.0, 5.0)),
+            _ => Base::Body(draws.scale(0.05, 1.0)),
         };
         let bodies = Bodies {
             periodic,

@@ -103,7 +103,7 @@ fn traction_becomes_the_pressure() {
         .map(|k| grid.center(k / 16, k % 16))
         .map(|[x, y]| 1.0 + (q[0] * x).cos() * (q[1] * y).sin())
         .collect();
-    let spectrum = SubsurfaceStress::new(&kernel, &pressure, 0.3).unwrap().sources[0].spectrum.clone();
+    let spectrum = SubsurfaceStress::new(&kernel, &pressure, 0.3).unwrap().source.spectrum.clone();
     for k in [0, 37, 200, 511] {
         let [x, y] = grid.center(k / 16, k % 16);
         let below = |z: f64| waves::below_field(&grid, &spectrum, [x, y, z], [1.0, 0.4]);
