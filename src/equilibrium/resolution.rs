@@ -4,6 +4,15 @@ use std::f64::consts::FRAC_PI_4;
 
 use crate::extent::Extent;
 use crate::parallel::Rows;
+use crate::sum;
+
+/// The interval that holds two others.
+fn joined(a: Option<[usize; 2]>, b: Option<[usize; 2]>) -> Option<[usize; 2]> {
+    match (a, b) {
+        (Some([a, b]), Some([c, d])) => Some([a.min(c), b.max(d)]),
+        (one, other) => one.or(other),
+    }
+}
 
 /// How contact goes on beyond the first and the last cells of a field along an axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,20 +40,59 @@ pub(crate) struct Resolution {
     sides: [f64; 2],
 }
 
-/// Cells, their sides along each axis with which contact ends, and the rectangle of the field that holds them.
-type Counted = ([usize; 3], Option<Extent>);
-
 impl Outline<'_> {
     /// Of all cells under pressure, with their number among those of the rows of all ranks, and the rectangle of this
-    /// rank's rows that holds its own. A call of all ranks; the resolution does not depend on their number.
+    /// rank's rows that holds its own: one look at each row. A call of all ranks; the resolution does not depend on
+    /// their number.
     pub(crate) fn resolution(&self) -> (Resolution, usize, Option<Extent>) {
-        let (rows, [n1, n2]) = (self.rows, self.rows.cells());
-        let band = rows.band_cells() / n2;
-        let [(own, extent)] = self.counted::<1>(band, 0, |_| 0);
-        let [cells, across, along] = own.map(|count| rows.count(count));
+        let Outline { rows, pressure, ends: [down, right], .. } = self;
+        let ([n1, n2], band, first) = (rows.cells(), rows.band_cells() / rows.cells()[1], rows.own().start);
+        let differ = |a: &[f64], b: &[f64]| a.iter().zip(b).filter(|(a, b)| (**a > 0.0) != (**b > 0.0)).count();
+        // rows are read from their first pressed cell to the last
+        let bounds = |row: &[f64]| {
+            let low = row.iter().position(|p| *p > 0.0)?;
+            Some([low, row.iter().rposition(|p| *p > 0.0).map_or(n2, |last| last + 1)])
+        };
+        let ([mut cells, mut across, mut along], mut extent) = ([0; 3], None);
+        let (mut above, mut above_is_whole) = (None, false);
+        for (i, row) in pressure.chunks_exact(n2).enumerate() {
+            let (own, mut is_whole) = (bounds(row), false);
+            if let Some([low, high]) = own {
+                let inner = &row[low..high];
+                let count = inner.iter().filter(|p| **p > 0.0).count();
+                let left = low > 0 || right.open[0] || right.joined && high < n2;
+                let after = high < n2 || right.open[1] || right.joined && low > 0;
+                cells += count;
+                along += usize::from(left) + usize::from(after);
+                // a row without holes has no other sides
+                is_whole = count == high - low;
+                along += if is_whole { 0 } else { differ(inner, &inner[1..]) };
+                across += if first + i == 0 && down.open[0] { count } else { 0 };
+                across += if first + i + 1 == n1 && down.open[1] { count } else { 0 };
+                let row = Extent { low: [i, low], high: [i, high - 1] };
+                extent = Some(extent.map_or(row, |extent: Extent| extent.with(row)));
+            }
+            if i % band > 0
+                && let Some([low, high]) = joined(own, above)
+            {
+                across += match (own, above) {
+                    // rows without holes that lie side by side differ at their ends
+                    (Some([a, b]), Some([c, d])) if is_whole && above_is_whole && a.max(c) < b.min(d) => {
+                        a.abs_diff(c) + b.abs_diff(d)
+                    }
+                    _ => differ(&row[low..high], &pressure[(i - 1) * n2..][low..high]),
+                };
+            }
+            (above, above_is_whole) = (own, is_whole);
+        }
+        if down.joined && self.is_one_band() && !pressure.is_empty() {
+            across += differ(&pressure[..n2], &pressure[(n1 - 1) * n2..]);
+        }
+        let [cells, across, along] = [cells, across, along].map(|count| rows.count(count));
         // sides between bands, which ranks may not share, are as frequent as the others
-        let sides = n1 - 1 + usize::from(self.ends[0].joined);
-        let share = if band < n1 { sides as f64 / (n1 - n1.div_ceil(band)) as f64 } else { 1.0 };
+        let ([n1, n2], seam) = (rows.cells(), usize::from(self.ends[0].joined));
+        let counted = if self.is_one_band() { n1 } else { n1 - n1.div_ceil(rows.band_cells() / n2) };
+        let share = if self.is_one_band() { 1.0 } else { (n1 - 1 + seam) as f64 / counted as f64 };
         let resolution = Resolution { cells: cells as f64, sides: [across as f64 * share, along as f64] };
         (resolution.imaged(self.images), cells, extent)
     }
@@ -56,47 +104,43 @@ impl Outline<'_> {
         first: usize,
         body: impl Fn(usize) -> usize,
     ) -> [(Resolution, Option<Extent>); N] {
-        self.counted(self.rows.cells()[0], first, body).map(|(counts, extent)| {
-            let [cells, across, along] = counts.map(|count| count as f64);
-            (Resolution { cells, sides: [across, along] }.imaged(self.images), extent)
-        })
-    }
-
-    /// Of the cells under each of `N` bodies from `first` on. Sides between bands of so many rows are left out.
-    fn counted<const N: usize>(&self, band: usize, first: usize, body: impl Fn(usize) -> usize) -> [Counted; N] {
-        let mut found = [([0; 3], None); N];
+        let mut found = [(Resolution::default(), None); N];
         let n2 = self.rows.cells()[1];
-        for (i, row) in self.pressure.chunks_exact(n2).enumerate() {
-            for j in (0..n2).filter(|&j| row[j] > 0.0) {
-                let own = body(i * n2 + j);
-                let Some((counts, extent)) = own.checked_sub(first).and_then(|n| found.get_mut(n)) else { continue };
+        for k in (0..self.pressure.len()).filter(|&k| self.pressure[k] > 0.0) {
+            let own = body(k);
+            if let Some((Resolution { cells, sides }, extent)) = own.checked_sub(first).and_then(|n| found.get_mut(n)) {
                 let same = |other: usize| self.pressure[other] > 0.0 && body(other) == own;
-                let [across, along] = self.ended_sides([i, j], band, same);
-                *counts = [counts[0] + 1, counts[1] + across, counts[2] + along];
-                let cell = Extent::of([i, j]);
+                let [one, across, along] = self.of_cell(k, same);
+                (*cells, *sides) = (*cells + one, sum::add(*sides, [across, along]));
+                let cell = Extent::of([k / n2, k % n2]);
                 *extent = Some(extent.map_or(cell, |extent: Extent| extent.with(cell)));
             }
         }
-        found
+        found.map(|(resolution, extent)| (resolution.imaged(self.images), extent))
     }
 
-    /// The number of sides of a cell along each axis beyond which there is no contact, which is `same`.
-    fn ended_sides(&self, [own, j]: [usize; 2], band: usize, same: impl Fn(usize) -> bool) -> [usize; 2] {
-        let ([n1, n2], [down, right]) = (self.rows.cells(), self.ends);
-        let (i, k) = (self.rows.own().start + own, own * n2 + j);
+    fn is_one_band(&self) -> bool {
+        self.rows.len() <= self.rows.band_cells()
+    }
+
+    /// Of a cell: 1, and the number of its sides along each axis beyond which there is no contact, which is `same`.
+    fn of_cell(&self, k: usize, same: impl Fn(usize) -> bool) -> [f64; 3] {
+        let [n1, n2] = self.rows.cells();
+        let (i, j, [down, right]) = (self.rows.own().start + k / n2, k % n2, self.ends);
+        let end = |is_end: bool| f64::from(u8::from(is_end));
         let before = match i {
-            0 if down.joined => band >= n1 && !same(k + (n1 - 1) * n2),
+            0 if down.joined => !same(k + (n1 - 1) * n2),
             0 => down.open[0],
-            _ => own % band > 0 && !same(k - n2),
+            _ => !same(k - n2),
         };
         let after = match n1 - i {
-            1 if down.joined => band >= n1 && !same(k - i * n2),
+            1 if down.joined => !same(k - i * n2),
             1 => down.open[1],
-            _ => (own + 1) % band > 0 && !same(k + n2),
+            _ => !same(k + n2),
         };
         let left = if j > 0 { !same(k - 1) } else { right.open[0] || right.joined && !same(k + n2 - 1) };
         let right = if j + 1 < n2 { !same(k + 1) } else { right.open[1] || right.joined && !same(k + 1 - n2) };
-        [usize::from(before) + usize::from(after), usize::from(left) + usize::from(right)]
+        [1.0, end(before) + end(after), end(left) + end(right)]
     }
 }
 
@@ -171,9 +215,8 @@ mod tests {
             assert_eq!((found.cells, found.sides[1]), (pressure.iter().sum(), expected[1]), "{scene}");
             assert_eq!((pressed as f64, own.is_some()), (found.cells, pressed > 0), "{scene}");
             assert_eq!(own, Extent::hull(pressed_cells(&pressure, n2)), "{scene}");
-            let is_one_band = rows.len() <= rows.band_cells();
-            let exact = if is_one_band { 1e-12 } else { 0.1 };
-            in_bands += usize::from(!is_one_band);
+            let exact = if outline.is_one_band() { 1e-12 } else { 0.1 };
+            in_bands += usize::from(!outline.is_one_band());
             assert!((found.sides[0] - expected[0]).abs() <= exact * expected[0], "{scene}: {found:?} {expected:?}");
             let on_ranks = Threads::run(3, |ranks| {
                 let rows = Rows::of_rank(cells, ranks);
