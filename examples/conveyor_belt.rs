@@ -1,7 +1,7 @@
 //! A conveyor belt runs over an idler roll: the rubber below its steel cords creeps, the steel does not, and what the rubber does not give back is the greater part of
 //! what a long conveyor consumes. Resistance over the speed for covers of several thicknesses, each speed as one contact problem.
 //!
-//! In plane strain, on a layer whose base is rigid: steel is ten thousand times as stiff.
+//! In plane strain, on a layer whose base is rigid: steel is a thousand times as stiff.
 //!
 //! `cargo run --release -p viscocontact --features plot,sliding --example conveyor_belt`
 
