@@ -128,7 +128,7 @@
 //! | `sliding` | [`sliding`] |
 //! | `states` | [`states`] |
 //! | `study` | [`study`] |
-//! | `stress` | [`observe::SubsurfaceStress`], [`contact::StressHistory`] |
+//! | `stress` | [`observe::SubsurfaceStress`] |
 //! | `surfaces` | [`geometry::HeightMap`], [`geometry::Rough`], [`geometry::SurfaceStatistics`] |
 //! | `temperature` | [`rheology::TimeTemperature`], [`rheology::TemperatureHistory`] |
 //! | `text` | [`input`] |
@@ -218,7 +218,7 @@ mod sum;
 
 pub use axis::Axis;
 pub use contact::ViscoelasticContact;
-pub use error::{Convergence, Error, ErrorKind, OutputError, Refusal, Result, Special, Trend, UserError};
+pub use error::{Error, ErrorKind, OutputError, Refusal, Result, Special, UserError};
 pub use grid::Grid;
 #[cfg(feature = "text")]
 pub use input::{Delimiter, TextFormat};

@@ -33,10 +33,6 @@ makers! {Layer, py:
     /// A layer bonded to a half-space of the same creep function: `shear_ratio` is the layer's shear modulus over the base's.
     bonded_to_half_space(thickness: f64, nu: f64, shear_ratio: f64, base_nu: f64) =
         vc::Layer::bonded_to_half_space(thickness, nu, shear_ratio, base_nu);
-
-    /// A layer of one material bonded to a half-space of another: for `SteadySliding` with `base`.
-    bonded_to_material(thickness: f64, layer: Bound<'_, Material>, base: Bound<'_, Material>) =
-        vc::Layer::bonded_to_material(thickness, &layer.get().material, &base.get().material);
 }
 
 getters! {Layer.layer, of:

@@ -91,7 +91,7 @@ mod _native {
         sliding::{SlidingReport, SlidingTable, SteadySliding},
         states::ElasticStates,
         states_contact::StatesContact,
-        stress::{EnergyBalance, StressHistory, SubsurfaceStress},
+        stress::{EnergyBalance, SubsurfaceStress},
         study::Study,
         temperature::{TemperatureHistory, TimeTemperature},
         writers::{CsvHistory, FrameSeries},

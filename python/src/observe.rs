@@ -1,4 +1,4 @@
-//! What a state shows: patches, profiles, distributions, stress.
+//! What a state shows: patches, profiles, stress.
 
 use numpy::PyArrayMethods;
 use viscocontact::observe as ob;
@@ -33,16 +33,6 @@ macro_rules! observed {
                 Ok(Some(dict! { py; error { approach, max_pressure, pressure_field, area } }))
             }
 
-            /// The distribution of the pressure over the grid: the share at zero, the centres of the bins [Pa], and the density [1/Pa].
-            fn pressure_distribution<'py>(slf: Shared<'_, Self>, py: Python<'py>, bins: Count) -> PyResult<Bins<'py>> {
-                distribution(py, &slf.shown()?.pressure_distribution(bins.0).or_raise()?)
-            }
-
-            /// The distribution of the gap where it is finite: the share at zero, the centres of the bins [m], and the density [1/m].
-            fn gap_distribution<'py>(slf: Shared<'_, Self>, py: Python<'py>, bins: Count) -> PyResult<Bins<'py>> {
-                distribution(py, &slf.shown()?.gap_distribution(bins.0).or_raise()?)
-            }
-
             /// Arrays "position" [m], "pressure", "displacement", "gap" and "traction" along the line of cells in the direction of the axis `along`
             /// (0 or 1) that contains the other coordinate `at` [m].
             #[pyo3(signature = (along=0, at=0.0))]
@@ -63,13 +53,6 @@ macro_rules! observed {
             fn patches<'py>(slf: Shared<'_, Self>, py: Python<'py>) -> PyResult<Labelled<'py>> {
                 let contact = slf.shown()?;
                 labelled(py, contact.grid(), free(py, || contact.patches()).or_raise()?)
-            }
-
-            /// About a point [m] along x1 and x2: the "center_of_pressure" [m], the "reach" to the ends of the contact, back and ahead along each
-            /// axis [m], and its "skewness", (ahead − back)/(ahead + back); None without contact.
-            fn asymmetry<'py>(slf: Shared<'_, Self>, py: Python<'py>, about: [f64; 2]) -> PyResult<Option<Dict<'py>>> {
-                let Some(of) = slf.shown()?.asymmetry(about).or_raise()? else { return Ok(None) };
-                Ok(Some(dict! { py; of { center_of_pressure, reach }, "skewness": of.skewness() }))
             }
 
             /// The stress below the surface of the creeping body, or with `in_counter_body` of the other one.
@@ -119,11 +102,4 @@ pub fn patches<'py>(
 ) -> PyResult<Labelled<'py>> {
     let pressure = field("pressure", pressure, grid.0.cells())?;
     labelled(py, &grid.0, free(py, || ob::Patches::new(&grid.0, &pressure, periodic)).or_raise()?)
-}
-
-/// The share at zero, and the centres and densities of bins.
-type Bins<'py> = (f64, Array<'py>, Array<'py>);
-
-fn distribution<'py>(py: Python<'py>, of: &ob::Distribution) -> PyResult<Bins<'py>> {
-    Ok((of.share_at_zero, line(py, of.centers().collect())?, line(py, of.density.clone())?))
 }

@@ -225,7 +225,7 @@ impl Run {
         Ok(on_run!(self, py, run => run.rejected_steps()))
     }
 
-    /// Where the error of a run in space comes from, relative: "time", "pressure", "solver", and of the mesh "mesh_approach",
+    /// Where the error of a run in space comes from, relative: "time", "solver", and of the mesh "mesh_approach",
     /// "mesh_max_pressure", "mesh_area"; None where there is no estimate. "text" says so in words.
     fn error_budget<'py>(&self, py: Python<'py>) -> PyResult<Dict<'py>> {
         let Of::Space(contact) = &self.of else {
@@ -235,7 +235,7 @@ impl Run {
         let budget = contact.held.run_ref(self.number)?.error_budget();
         let mesh = budget.mesh.as_ref();
         Ok(dict! { py;
-            budget { time, pressure, solver },
+            budget { time, solver },
             "mesh_approach": mesh.map(|mesh| mesh.approach),
             "mesh_max_pressure": mesh.and_then(|mesh| mesh.max_pressure),
             "mesh_area": mesh.map(|mesh| mesh.area),

@@ -89,8 +89,6 @@ getters! {SlidingReport, of, py:
 ///
 /// Parameters
 /// ----------
-/// base : Material, optional
-///     The base of a layer (`Layer.bonded_to_material`), if it creeps otherwise.
 /// modulus : function, optional
 ///     The complex contact modulus E′ + i E″ [Pa] at frequencies ≥ 0 [rad/s], in place of that of the material.
 /// counter_motion : "slides" or "rolls", optional
@@ -116,8 +114,8 @@ pub struct SteadySliding {
 impl SteadySliding {
     #[new]
     #[pyo3(
-        signature = (grid, geometry, material, *, base=None, modulus=None, counter_motion=None, **options),
-        text_signature = "(grid, geometry, material, *, base=None, modulus=None, counter_motion=None, **options)"
+        signature = (grid, geometry, material, *, modulus=None, counter_motion=None, **options),
+        text_signature = "(grid, geometry, material, *, modulus=None, counter_motion=None, **options)"
     )]
     #[allow(clippy::too_many_arguments)]
     fn new(
@@ -125,7 +123,6 @@ impl SteadySliding {
         grid: Bound<'_, Grid>,
         geometry: Object<'_>,
         material: Bound<'_, Material>,
-        base: Option<Bound<'_, Material>>,
         modulus: Option<Function>,
         counter_motion: Option<&str>,
         options: Option<&Dict<'_>>,
@@ -137,20 +134,14 @@ impl SteadySliding {
         }
         let kept = Kept::default();
         let raised = kept.clone();
-        let bodies = base.as_ref().map(|base| base.get().material.clone());
-        let sliding = match (bodies, modulus.clone()) {
-            (None, None) => free(py, || builder.build_sliding()),
-            (Some(base), None) => free(py, || builder.build_sliding_on(base)),
-            (None, Some(modulus)) => {
-                free(py, || builder.build_sliding_by(move |omega| complex(&modulus, omega, &raised)))
-            }
-            _ => return Err(PyTypeError::new_err("give base or modulus, not both")),
+        let sliding = match modulus.clone() {
+            None => free(py, || builder.build_sliding()),
+            Some(modulus) => free(py, || builder.build_sliding_by(move |omega| complex(&modulus, omega, &raised))),
         };
         let cancel = Arc::<AtomicBool>::default();
         let sliding = kept.raise_or(sliding.or_raise())?.cancelled_by(Arc::clone(&cancel));
         let (keywords, called) = (PyDict::new(py), modulus.iter().cloned().collect::<Vec<_>>());
         options.map_or(Ok(()), |options| keywords.update(options.as_mapping()))?;
-        keywords.set_item("base", base)?;
         keywords.set_item("modulus", modulus)?;
         keywords.set_item("counter_motion", counter_motion)?;
         let recipe = Recipe::new(py, "", (grid, geometry, material))?.with_keywords(Some(&keywords))?.calling(called);

@@ -147,48 +147,6 @@ getters! {SubsurfaceStress, of:
     grid: Grid = Grid(of.grid().clone());
 }
 
-/// The stress in a body with an elastic bulk, whose Poisson's ratio changes as it creeps: it follows a run from before the first load.
-///
-/// With `in_counter_body` that of the counter body. Raises ValueError if the contact is pressed already.
-///
-/// >>> polymer = Material(Rheology.zener(1e9, 2e8, 0.25), bulk_modulus=3e9)
-/// >>> contact = ViscoelasticContact(Grid(32, 2e-3), Shape.sphere(10e-3), polymer)
-/// >>> history = StressHistory(contact)            # before the first load
-/// >>> for report in contact.follow(Load.force(20.0), 0.7, dt=0.1):
-/// ...     history.record(contact)                 # after every step
-/// >>> history.stress(contact).maximum([1e-4, 2e-4, 3e-4])["value"] > 0.5 * contact.max_pressure
-/// True
-#[pyclass(module = "viscocontact")]
-pub struct StressHistory(ct::StressHistory);
-
-#[pymethods]
-impl StressHistory {
-    #[new]
-    #[pyo3(signature = (contact, *, in_counter_body=false))]
-    fn new(contact: Shared<'_, ViscoelasticContact>, in_counter_body: bool) -> PyResult<StressHistory> {
-        let of = if in_counter_body { ct::StressHistory::of_counter_body } else { ct::StressHistory::new };
-        of(contact.get()?).or_raise().map(StressHistory)
-    }
-
-    /// Takes in the step that the contact has made since the last call.
-    fn record(mut slf: Taken<'_, Self>, py: Python<'_>, contact: Shared<'_, ViscoelasticContact>) -> PyResult<()> {
-        let contact = contact.get()?;
-        let history = &mut slf.0;
-        free(py, || history.record(contact)).or_raise()
-    }
-
-    /// The stress of the state recorded last.
-    fn stress(
-        slf: Shared<'_, Self>,
-        py: Python<'_>,
-        contact: Shared<'_, ViscoelasticContact>,
-    ) -> PyResult<SubsurfaceStress> {
-        let contact = contact.get()?;
-        let history = &slf.0;
-        free(py, || history.stress(contact)).or_raise().map(SubsurfaceStress)
-    }
-}
-
 /// The work of the load of a contact, and what the bodies store and dissipate of it: it follows a run from before the first step.
 ///
 /// >>> contact = ViscoelasticContact(Grid(48, 4e-3), Shape.sphere(10e-3), Material(Rheology.relaxing(4e6, 1e6, 1.0)))

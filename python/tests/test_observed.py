@@ -120,20 +120,6 @@ def test_files_of_stress(tmp_path):
     assert (tmp_path / "stress.vtr").stat().st_size > 0
 
 
-def test_history_of_the_stress():
-    contact = vc.ViscoelasticContact(vc.Grid(32, 2e-3), BALL, vc.Material(vc.Rheology.zener(1e9, 2e8, 0.25), bulk_modulus=3e9))
-    history = vc.StressHistory(contact)
-    for _ in contact.follow(vc.Load.force(20.0), 0.7, dt=0.1):
-        history.record(contact)
-    assert history.stress(contact).maximum([1e-4, 2e-4, 3e-4])["value"] > 0.5 * contact.max_pressure
-    with pytest.raises(NotImplementedError):
-        contact.stress()
-    with pytest.raises(ValueError, match="before the first load"):
-        vc.StressHistory(contact)
-    with pytest.raises(ValueError, match="counter_body"):
-        vc.StressHistory(ball(), in_counter_body=True)
-
-
 def test_passes_of_attraction():
     law = vc.Attraction.exponential(0.05, 0.5e-6)
     law.check()
@@ -149,7 +135,6 @@ def test_passes_of_attraction():
 def test_what_a_state_shows():
     contact = ball()
     report = contact.step(0.0, vc.Load.force(0.5))
-    assert contact.asymmetry((0.0, 0.0))["skewness"] == pytest.approx([0, 0], abs=1e-9)
     assert report.convolutions > 0 and "approach" in report.estimated and report.figures["touch"] is None
     labels, all = contact.patches()
     again, same = vc.patches(contact.grid, contact.pressure)

@@ -115,7 +115,6 @@ def test_a_matrix_has_one_orientation(tmp_path):
 @pytest.mark.parametrize("bad, error, text", [
     (lambda: ball(max_iterations=-1), ValueError, "whole number"),
     (lambda: vc.HeightMap.rough(vc.Grid(16, 1e-3), 5e-4, 2e-4, rms_slope=0.1, seed=-1), ValueError, "whole number"),
-    (lambda: ball().pressure_distribution(-1), ValueError, "whole number"),
     (lambda: ball(tolerence=1e-3), TypeError, "did you mean 'tolerance'"),
     (lambda: vc.Identification("zener", robsut=True), TypeError, "did you mean 'robust'"),
     (lambda: ball(times=(10, 1)), ValueError, "times = "),

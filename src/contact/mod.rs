@@ -44,8 +44,6 @@ pub use moving::along_path::TravelReport;
 pub use read::energies::{Energies, EnergyBalance};
 pub(crate) use read::limits::Limits;
 pub use read::report::{Estimated, StepReport};
-#[cfg(feature = "stress")]
-pub use read::stress::StressHistory;
 pub use state::snapshot::Snapshot;
 #[cfg(feature = "adhesion")]
 pub use step::attraction::PassReport;

@@ -82,7 +82,7 @@ impl ViscoelasticContact {
         let State { held, history, clock, .. } = state;
         let surface = Surface { own: history.displacement(), far: history.far_source().map(|source| (1.0, source)) };
         let (time, material, temperature) = (Some(clock.time), Some(material), temperature.as_ref());
-        let about = About { time, reduced_time: clock.reduced_time, material, temperature };
+        let about = About { time, material, temperature };
         Fields { ground, held, surface, view: &self.view, kernel: Some(&window.kernel), about }
     }
 }

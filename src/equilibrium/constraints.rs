@@ -7,7 +7,7 @@ use crate::Grid;
 use crate::axis::Axis;
 use crate::equilibrium::held::net_sum;
 use crate::equilibrium::{Edge, Ground, Held, Region, Request, Trial, Window};
-use crate::error::{Convergence, Error, Result, StepError, exact_length};
+use crate::error::{Error, Result, StepError, exact_length};
 use crate::load::{Load, Tilt, load_point};
 use crate::solver::{Counts, Freedom, Outcome, Solution};
 
@@ -84,7 +84,7 @@ pub(crate) fn below_full_contact(window: &Window, trial: &Trial, request: Reques
 
 /// Rejects a contact problem that the solver did not solve.
 pub(crate) fn converged(outcome: Outcome, ground: &Ground, solution: &Solution, request: Request<'_>) -> Result<()> {
-    let Solution { residual, counts: Counts { iterations, .. }, ref trace, .. } = *solution;
+    let Solution { residual, counts: Counts { iterations, .. }, .. } = *solution;
     let Request { time, length: dt, tolerance, .. } = request;
     match outcome {
         Outcome::Converged => Ok(()),
@@ -98,8 +98,7 @@ pub(crate) fn converged(outcome: Outcome, ground: &Ground, solution: &Solution, 
         }
         Outcome::OutOfIterations | Outcome::Stagnated => {
             let stagnated = outcome == Outcome::Stagnated;
-            let convergence = Convergence::new(trace.samples(), tolerance, stagnated).into();
-            Err(Error::Step(StepError::NotConverged { time, dt, iterations, residual, tolerance, convergence }))
+            Err(Error::Step(StepError::NotConverged { time, dt, iterations, residual, tolerance, stagnated }))
         }
     }
 }

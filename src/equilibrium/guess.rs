@@ -98,7 +98,6 @@ fn best_reach([now, before]: [&Solution; 2], rows: &Rows, gap: &[f64], c: f64, w
 pub(crate) fn begin(held: &Held, trial: &mut Trial, request: Request<'_>) {
     trial.solution.counts = Counts::default();
     trial.solution.relative_rounding = 0.0;
-    trial.solution.trace.clear();
     (trial.reach, trial.predicted) = (0.0, false);
     let datum = request.indenter.gap().datum;
     for (body, motion) in trial.solution.motions.iter_mut().enumerate() {

@@ -64,14 +64,10 @@ pub(crate) fn missing(part: &'static str) -> Error {
     Refusal::value("missing", what, remedy).naming(part).into()
 }
 
-/// The error of what was taken of another contact.
-pub(crate) fn other_contact(what: &str, remedy: &str) -> Error {
-    Refusal::value("other_contact", format!("{what} was taken of another contact"), remedy).into()
-}
-
-/// That of a snapshot.
+/// The error of a snapshot that was taken of another contact.
 pub(crate) fn of_other_contact() -> Error {
-    other_contact("the snapshot", ": only snapshots of the contact or of a clone can be restored")
+    let remedy = ": only snapshots of the contact or of a clone can be restored";
+    Refusal::value("other_contact", "the snapshot was taken of another contact", remedy).into()
 }
 
 /// Accepts a slice of exactly `expected` values.

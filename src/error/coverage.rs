@@ -86,13 +86,9 @@ not_covered! {
 
     // observations
     STRESS: "the stress below the surface", Ranks: ONE_PROCESS, Attraction: STRESS_OF_TRACTION;
-    STRESS_HISTORY: "a history of the stress",
-        Ranks: ONE_PROCESS, Attraction: STRESS_OF_TRACTION, FixedToIndenter: OTHER_FRAME;
     ENERGIES: "an energy balance", Ranks: ONE_PROCESS, FixedToIndenter: OTHER_FRAME;
     MESH_ERROR: "the error due to the mesh", Ranks: ONE_PROCESS, Attraction: "compute on a finer mesh, and compare";
-    DISTRIBUTION: "a distribution", Ranks: ONE_PROCESS;
     PATCHES: "the search for patches", Ranks: ONE_PROCESS;
-    ASYMMETRY: "the asymmetry", Ranks: ONE_PROCESS;
     #[cfg(feature = "plot")]
     PICTURE: "a picture of fields", Ranks: ONE_PROCESS;
 }

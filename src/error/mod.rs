@@ -1,7 +1,6 @@
 //! The error type of the crate, and the checks that return it.
 
 mod checks;
-mod convergence;
 pub(crate) mod coverage;
 mod debug;
 mod kind;
@@ -15,9 +14,8 @@ mod violation;
 
 pub(crate) use checks::{
     LONGEST, count_within, exact_length, finite, in_order, least_length, length, missing, non_negative,
-    of_other_contact, other_contact, poisson_ratio, positive, within,
+    of_other_contact, poisson_ratio, positive, within,
 };
-pub use convergence::{Convergence, Trend};
 pub use coverage::Special;
 pub use kind::ErrorKind;
 pub use output::OutputError;

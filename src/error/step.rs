@@ -1,6 +1,8 @@
-use super::Convergence;
 use crate::axis::Axis;
 use crate::rounded::{TIME, rounded};
+
+/// A solver that makes no progress at residuals above this is not hindered by rounding.
+const STALLED: f64 = 1e-3;
 
 /// Why a step of a contact failed, or a run of steps. The contact is as it was.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -106,11 +108,12 @@ pub enum StepError {
         what: &'static str,
     },
 
-    /// The solver did not converge within [`Settings::max_iterations`](crate::contact::Settings::max_iterations); the
-    /// residual history suggests a remedy.
+    /// The solver did not converge within [`Settings::max_iterations`](crate::contact::Settings::max_iterations), or
+    /// made no more progress.
     #[error(
         "at t = {time} s (step of {dt} s): residual {residual:.2e} after {iterations} iterations, above the \
-        tolerance {tolerance:e}; {convergence}", time = rounded(*.time, TIME), dt = rounded(*.dt, TIME))]
+        tolerance {tolerance:e}; {}", progress(*.residual, *.stagnated), time = rounded(*.time, TIME),
+        dt = rounded(*.dt, TIME))]
     NotConverged {
         /// End of the step \[s\].
         time: f64,
@@ -122,8 +125,8 @@ pub enum StepError {
         residual: f64,
         /// Residual allowed.
         tolerance: f64,
-        /// The residual history.
-        convergence: Box<Convergence>,
+        /// Whether the solver ended because no iteration made progress, not because its iterations were spent.
+        stagnated: bool,
     },
 
     /// The allowed error in time needs a step below the resolution of `f64` at this time: the load changes too fast, or
@@ -150,6 +153,18 @@ pub enum StepError {
         /// The quantity that overflowed.
         what: &'static str,
     },
+}
+
+/// What a solve that did not converge needs.
+fn progress(residual: f64, stagnated: bool) -> &'static str {
+    match (stagnated, residual > STALLED) {
+        (true, true) => "it stagnates far above rounding: take smaller steps",
+        (true, false) => {
+            "it stagnates at the level of rounding: raise Settings::tolerance above that, or bring the scales of the \
+            scene closer together (a grid not much larger than the contact)"
+        }
+        (false, _) => "it may fall further: raise Settings::max_iterations",
+    }
 }
 
 /// How wide the grid is, and how wide it should be.

@@ -43,6 +43,6 @@ impl Fields<'_> {
         held.sum_up();
         let (ground, far, view) = (Ground::clone(ground), None, View::default());
         let (material, temperature) = (None, None);
-        KeptFields { ground, held, displacement, far, view, time: Some(time), reduced_time: 0.0, material, temperature }
+        KeptFields { ground, held, displacement, far, view, time: Some(time), material, temperature }
     }
 }

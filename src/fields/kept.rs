@@ -14,7 +14,6 @@ pub struct KeptFields {
     pub(super) far: Option<(f64, Vec<f64>)>,
     pub(super) view: View,
     pub(super) time: Option<f64>,
-    pub(super) reduced_time: f64,
     pub(super) material: Option<Material>,
     pub(super) temperature: Option<TemperatureHistory>,
 }
@@ -22,10 +21,10 @@ pub struct KeptFields {
 impl KeptFields {
     /// The fields, and what follows from them.
     pub fn fields(&self) -> Fields<'_> {
-        let KeptFields { ground, held, displacement, far, view, time, reduced_time, material, temperature } = self;
+        let KeptFields { ground, held, displacement, far, view, time, material, temperature } = self;
         let surface = Surface { own: displacement, far: far.as_ref().map(|(factor, source)| (*factor, &source[..])) };
         let (material, temperature) = (material.as_ref(), temperature.as_ref());
-        let about = About { time: *time, reduced_time: *reduced_time, material, temperature };
+        let about = About { time: *time, material, temperature };
         Fields { ground, held, surface, view, kernel: None, about }
     }
 }
@@ -64,7 +63,6 @@ impl Fields<'_> {
             far: surface.far.map(|(factor, source)| (factor, source.to_vec())),
             view: View::clone(view),
             time: about.time,
-            reduced_time: about.reduced_time,
             material: about.material.cloned(),
             temperature: about.temperature.cloned(),
         }

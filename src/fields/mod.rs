@@ -74,7 +74,6 @@ pub struct Fields<'a> {
 #[derive(Clone, Copy, Default)]
 pub(crate) struct About<'a> {
     pub(crate) time: Option<f64>,
-    pub(crate) reduced_time: f64,
     pub(crate) material: Option<&'a Material>,
     pub(crate) temperature: Option<&'a TemperatureHistory>,
 }
@@ -92,11 +91,6 @@ impl<'a> Fields<'a> {
     /// Time \[s\]; `None` of a contact that knows none.
     pub fn time(&self) -> Option<f64> {
         self.about.time
-    }
-
-    /// Time as it passes for the material \[s\]; 0 of a contact that knows none.
-    pub(crate) fn reduced_time(&self) -> f64 {
-        self.about.reduced_time
     }
 
     /// The grid of every field.

@@ -39,9 +39,6 @@ pub(crate) struct StepContext {
     pub(crate) on_switch: [f64; 2],
     /// The mean v of the maximum loads, to which the error at that moment is relative; 0 where none is to follow.
     pub(crate) greatest_on_switch: f64,
-    /// The response of v to an error of u of the cells that are met in a jump of the force at the end of the step; 0
-    /// if there is none.
-    pub(crate) on_jump: f64,
     /// Whether the load has a corner or jumps at the end of the step, which no step then puts right.
     pub(crate) is_last: bool,
     /// How far the defects of the run agree in sign, 0 … 1.
@@ -68,7 +65,6 @@ impl Default for StepContext {
             lasting: [0.0; 2],
             on_switch: [0.0; 2],
             greatest_on_switch: 0.0,
-            on_jump: 0.0,
             is_last: false,
             agreement: 1.0,
             steps: f64::INFINITY,

@@ -66,9 +66,6 @@ pub(crate) struct TimeError {
     pub(crate) relative: f64,
     /// Whether it comes of cells that joined.
     pub(crate) by_kinks: bool,
-    /// The maximum defect of v in a cell in contact, or in a cell that bodies may come back to, relative to the mean
-    /// of v.
-    pub(crate) greatest: f64,
     /// Means over the contact of displacement and v, weighted by the pressure.
     pub(crate) sizes: [f64; 2],
     /// Mean defect of v, and mean of its absolute value.
@@ -114,7 +111,7 @@ impl History {
         }
         let sizes = [sums.of_u, sums.of_v].map(|size| size / sums.weight);
         let scales = [0, 1].map(|which| sizes[which].max(measure.least[which]));
-        let Defect { signed, smooth, kinks, greatest, surface: [surface, of_surface], peak } =
+        let Defect { signed, smooth, kinks, surface: [surface, of_surface] } =
             sums.defect(rule, context.resolution, context.is_last);
         let kinks = if measure.from_rest { WEIGHTS.from_rest * kinks } else { kinks };
         let edge = if rule.has_dashpot() { WEIGHTS.edge } else { 1.0 };
@@ -135,9 +132,6 @@ impl History {
         let on_meeting = |u: f64| relative(of_force * u, whole[1]).max(relative(of_approach * u, whole[0]));
         let on_return = on_meeting(outside);
         let error_on_return = on_meeting(rule.compliance() * of_surface);
-        // single cells of the surface err by more than its mean, and so do their pressures when bodies meet them
-        let of_cells = relative(peak, of_surface) * (on_return + error_on_return);
-        let on_jump = relative(context.on_jump * (outside + rule.compliance() * peak), scales[1]);
         let error_on_switch = if matters[0] > 0.0 { relative(measure.on_switch * smooth, whole[1]) } else { 0.0 };
         let error = error_of_u.max(error_of_v).max(error_on_switch);
         TimeError {
@@ -145,7 +139,6 @@ impl History {
             by_kinks: error >= error_on_return
                 && error > error_on_switch
                 && if error_of_u > error_of_v { kinks_of_u > growth * smooth } else { WEIGHTS.edge * kinks > smooth },
-            greatest: relative(greatest, scales[1]).max(of_cells).max(on_jump),
             sizes: if pressed { sizes } else { [0.0; 2] },
             defect: [signed, smooth],
             surface,
@@ -188,7 +181,6 @@ impl History {
                     sums.kinks = add(sums.kinks, [kink, with_correction, 0.0]);
                     sums.kinks_within = add(sums.kinks_within, kinks.within(jump, bend));
                     sums.squares += widest * widest;
-                    sums.sharpest = sums.sharpest.max(greatest(&[kink, with_correction, widest]));
                     continue;
                 }
                 let last = if lacking < 3 { bend } else { bend - to_second * second[k] };
@@ -199,11 +191,8 @@ impl History {
                     let surface = depth * size;
                     sums.surface += surface.copysign(last);
                     sums.absolute_surface += surface;
-                    sums.peak = if depth > 0.0 { sums.peak.max(size) } else { sums.peak };
                 }
-                if touches {
-                    sums.steepest = sums.steepest.max(size);
-                } else if leaves {
+                if leaves {
                     (sums.released, sums.fallen) = (sums.released + now[k], sums.fallen + before[k] - now[k]);
                     sums.left = sums.left.max(size);
                 }
@@ -232,8 +221,6 @@ named_sums! {
         signed: +,
         /// Σ w |d|.
         absolute: +,
-        /// The largest |d| of cells in contact.
-        steepest: max,
         /// The largest |d| of cells that left the contact.
         left: max,
         /// Pressure of the cells that leave in this step, at its start, and by how much it fell in the step before.
@@ -250,16 +237,12 @@ named_sums! {
         kinks_within: modes,
         /// Sum of the squares of the most that v can lack by each kink.
         squares: +,
-        /// The largest of either.
-        sharpest: max,
         /// Sum of the depths to which bodies may come back.
         depth: +,
         /// Sum, over cells out of contact, of these depths times d.
         surface: +,
         /// Sum, over cells out of contact, of these depths times |d|.
         absolute_surface: +,
-        /// The largest |d| of these cells.
-        peak: max,
     }
 }
 
@@ -270,12 +253,8 @@ struct Defect {
     smooth: f64,
     /// By cells that joined.
     kinks: f64,
-    /// The largest of a cell.
-    greatest: f64,
     /// Of a surface that bodies may come back to, and of its absolute value.
     surface: [f64; 2],
-    /// The largest of a cell of this surface.
-    peak: f64,
 }
 
 impl Sums {
@@ -311,10 +290,8 @@ impl Sums {
             signed: scale * self.signed / self.weight,
             smooth: scale * (self.absolute / self.weight).max(left),
             kinks: kinks / self.touching.max(1.0),
-            greatest: (WEIGHTS.edge * self.sharpest).max(scale * self.steepest),
             surface: [self.surface, self.absolute_surface]
                 .map(|sum| if sum == 0.0 { 0.0 } else { scale * sum / self.depth }),
-            peak: scale * self.peak,
         }
     }
 }

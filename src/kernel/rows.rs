@@ -1,6 +1,6 @@
 //! What a unit pressure displaces at any distance along an axis, for bodies in steady motion.
 
-use std::f64::consts::{FRAC_1_PI, PI};
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 use super::InfluenceKernel;
@@ -8,7 +8,6 @@ use super::influence::Body;
 use super::layer::Remainder;
 use super::line_load::{Strip, wave_number};
 use super::love::{Love, rod_potential};
-use crate::quadrature::GaussLegendre;
 
 /// From so many thicknesses on a layer displaces as its base.
 const FARTHEST: f64 = 1e12;
@@ -17,7 +16,7 @@ const FARTHEST: f64 = 1e12;
 pub(crate) struct Row {
     /// At a distance along the row \[m\].
     pub(crate) influence: Box<dyn Fn(f64) -> f64 + Send + Sync>,
-    /// How far the cell, and what lies below it, is from the row \[m\].
+    /// How far the cell is from the row \[m\].
     pub(crate) aside: f64,
 }
 
@@ -27,27 +26,28 @@ impl InfluenceKernel {
         self.datum
     }
 
+    /// Whether [`InfluenceKernel::rows_along`] the axis are known: bodies end there, and are not of coefficients.
+    pub(crate) fn has_rows_along(&self, axis: usize) -> bool {
+        self.body != Body::User && !self.periodic[axis]
+    }
+
     /// What a unit pressure displaces at any distance along `axis`, in rows aside of it: at the distances of cells,
     /// or of each wave where bodies are periodic along the other axis. `None` for bodies that are periodic along the
     /// axis, and of coefficients.
-    ///
-    /// At a `depth` below a half-space, which may be 0, or of the layer.
-    pub(crate) fn rows_along(&self, axis: usize, depth: Option<f64>) -> Option<Vec<Row>> {
+    pub(crate) fn rows_along(&self, axis: usize) -> Option<Vec<Row>> {
         let (spacing, cells, layer) = (self.grid.spacing(), self.grid.cells()[1 - axis], self.layer_of().copied());
-        if self.body == Body::User || self.periodic[axis] {
+        if !self.has_rows_along(axis) {
             return None;
         }
-        let below = depth.unwrap_or(0.0);
         // the layer is a half-space beyond
         let far = layer.map_or(0.0, |layer| FARTHEST * layer.thickness());
         let added = |wave: Option<f64>| match (layer, wave) {
-            _ if depth.is_some() => None,
             (Some(layer), None) => Some(Remainder::of_cells(&layer, far)),
             (Some(layer), Some(0.0)) => Some(Remainder::of_lines(&layer, far, self.datum)),
             (Some(layer), Some(kappa)) => Remainder::of_wave(&layer, far, kappa),
             (None, _) => None,
         };
-        let longest = layer.filter(|_| depth.is_none()).map_or(1.0, |layer| layer.longest_over_half_space());
+        let longest = layer.map_or(1.0, |layer| layer.longest_over_half_space());
         if self.periodic[1 - axis] {
             let datum = self.datum.or_else(|| Some(2.0 * layer?.thickness()))?;
             let strip = Strip { side: spacing[axis], datum };
@@ -55,12 +55,11 @@ impl InfluenceKernel {
                 let kappa = wave_number(k, cells, spacing[1 - axis]);
                 let added = added(Some(kappa));
                 let influence = move |x: f64| match &added {
-                    _ if below > 0.0 => strip.below(x, below),
                     Some(_) if x > far => longest * strip.at(x, kappa),
                     Some(added) => strip.at(x, kappa) + added.on_line(x, strip.side),
                     None => strip.at(x, kappa),
                 };
-                Row { influence: Box::new(influence), aside: below }
+                Row { influence: Box::new(influence), aside: 0.0 }
             };
             return Some((0..=cells / 2).map(row).collect());
         }
@@ -69,12 +68,11 @@ impl InfluenceKernel {
             let (y, love, added) = (j as f64 * spacing[1 - axis], Arc::clone(&love), added.clone());
             let at = move |x: f64| if axis == 0 { [x, y] } else { [y, x] };
             let influence = move |x: f64| match &added {
-                _ if below > 0.0 => below_cell(spacing, at(x), below),
                 Some(_) if x > far => longest * love.at(at(x)),
                 Some(added) => love.at(at(x)) + added.on_cell(at(x), spacing),
                 None => love.at(at(x)),
             };
-            Row { influence: Box::new(influence), aside: (y - 0.5 * spacing[1 - axis]).max(0.0).hypot(below) }
+            Row { influence: Box::new(influence), aside: (y - 0.5 * spacing[1 - axis]).max(0.0) }
         };
         Some((0..cells).map(row).collect())
     }
@@ -97,43 +95,5 @@ impl Love {
     }
 }
 
-impl Strip {
-    /// The displacement at a distance x from the middle of a cell that lies at a `depth` below the points \[m\], for
-    /// the mean: −(1/π) ∫ ln((s² + depth²)/d²) ds.
-    pub(super) fn below(&self, x: f64, depth: f64) -> f64 {
-        let a = 0.5 * self.side;
-        let ln = |x: f64| 2.0 * (x.hypot(depth) / self.datum).ln();
-        if x.hypot(depth) > FAR_BELOW_LINE * self.side {
-            return -FRAC_1_PI * a * GaussLegendre::new(6).sum(|s| ln(x + a * s));
-        }
-        let primitive = |x: f64| x * (ln(x) - 2.0) + 2.0 * depth * (x / depth).atan();
-        -FRAC_1_PI * (primitive(x + a) - primitive(x - a))
-    }
-}
-
-/// The displacement over a cell that lies at a `depth` below the points, at a distance along each axis \[m\]:
-/// (1/π) ∬ dx dy / √(x² + y² + depth²).
-fn below_cell(sides: [f64; 2], [x, y]: [f64; 2], depth: f64) -> f64 {
-    let half = sides.map(|side| 0.5 * side);
-    let distance = x.hypot(y).hypot(depth);
-    if distance > DEEP * sides[0].max(sides[1]) {
-        let rule = GaussLegendre::new(6);
-        let over = |t: f64, s: f64| 1.0 / (x + half[0] * t).hypot(y + half[1] * s).hypot(depth);
-        return half[0] * half[1] / PI * rule.sum(|t| rule.sum(|s| over(t, s)));
-    }
-    let corner = |x: f64, y: f64| {
-        let r = x.hypot(y).hypot(depth);
-        x * (y / x.hypot(depth)).asinh() + y * (x / y.hypot(depth)).asinh() - depth * (x * y / (depth * r)).atan()
-    };
-    let [a, b] = half;
-    (corner(x + a, y + b) - corner(x - a, y + b) - corner(x + a, y - b) + corner(x - a, y - b)) / PI
-}
-
-/// So many longer sides from a cell below the points six points along each side are enough.
-const DEEP: f64 = 8.0;
-
 /// Six points along the shorter side are enough from so many of its halves on.
 const FAR: f64 = 12.0;
-
-/// So many sides from a cell below the surface six points are enough.
-const FAR_BELOW_LINE: f64 = 8.0;

@@ -2,11 +2,11 @@
 
 use crate::Axis;
 use crate::equilibrium::Held;
-use crate::error::{Convergence, Error, Result, StepError, coverage, finite};
+use crate::error::{Error, Refusal, Result, coverage};
 use crate::fields::Fields;
 use crate::linalg::solve_normal_equations;
 use crate::observe::profile::line_through;
-use crate::observe::{Asymmetry, Distribution, LineProfile, Patches};
+use crate::observe::{LineProfile, Patches};
 use crate::solver::{FLAT_PUNCH_TOLERANCE, flat_punch};
 
 /// Share of a motion, by its square, that is taken for dependent on the others: of a body that tilts on two cells.
@@ -19,6 +19,15 @@ const GRADIENT_TOLERANCE: f64 = 1e-12;
 struct Punches {
     fields: [Vec<f64>; 3],
     matrix: [[f64; 3]; 3],
+}
+
+/// The error of a motion under which no pressure was found.
+fn undetermined(iterations: usize, residual: f64, tolerance: f64) -> Error {
+    let what = format!(
+        "the body hardly determines the pressure under a rigid motion (residual {residual:.2e} after {iterations} \
+        iterations, above {tolerance:e})"
+    );
+    Refusal::search("stiffness_not_converged", what, ": check its influence coefficients").into()
 }
 
 impl Fields<'_> {
@@ -134,13 +143,10 @@ impl Fields<'_> {
         let touches = |k: usize| current.solution.pressure[k] > 0.0;
         let (mut fields, mut matrix) = ([const { Vec::new() }; 3], [[0.0; 3]; 3]);
         for j in (0..3).filter(|j| *j == 0 || tilts(j - 1).is_some()) {
-            let q = kernel.rows().or_loss(|| Ok(flat_punch(kernel, touches, |k| motion(j, k), tolerance)))?.map_err(
-                |(iterations, residual)| {
-                    let (time, dt) = (self.about.time.unwrap_or(0.0), 0.0);
-                    let convergence = Convergence::new(Vec::new(), tolerance, true).into();
-                    Error::Step(StepError::NotConverged { time, dt, iterations, residual, tolerance, convergence })
-                },
-            )?;
+            let q = kernel
+                .rows()
+                .or_loss(|| Ok(flat_punch(kernel, touches, |k| motion(j, k), tolerance)))?
+                .map_err(|(iterations, residual)| undetermined(iterations, residual, tolerance))?;
             let area = region.cell_area();
             matrix[0][j] = rows.sum(&q) * area;
             for i in (1..3).filter(|i| tilts(i - 1).is_some()) {
@@ -150,46 +156,6 @@ impl Fields<'_> {
             fields[j] = q;
         }
         Ok(Punches { fields, matrix })
-    }
-
-    /// The distribution of the pressure \[Pa\] over all cells of the grid, in `bins` between 0 and the largest
-    /// pressure. [`Distribution::share_at_zero`] is the share out of contact.
-    ///
-    /// # Errors
-    /// If `bins` is 0 or more than a million.
-    pub fn pressure_distribution(&self, bins: usize) -> Result<Distribution> {
-        self.covers(coverage::DISTRIBUTION)?;
-        Distribution::new(self.pressure().iter().copied().filter(|p| *p > 0.0), self.pressure().len(), bins)
-    }
-
-    /// The distribution of the gap \[m\] over all cells where the initial gap is finite, in `bins` between 0 and the
-    /// maximum gap. [`Distribution::share_at_zero`] is the share in contact, including cells that touch without
-    /// pressure.
-    ///
-    /// ```
-    /// use viscocontact::prelude::*;
-    ///
-    /// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
-    ///     .geometry(&Sphere::new(10.0e-3)?)
-    ///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
-    ///     .build()?;
-    /// contact.step(0.0, Load::force(0.5))?;
-    /// let gaps = contact.fields().gap_distribution(20)?;
-    /// for (gap, density) in gaps.centers().zip(&gaps.density) {
-    ///     println!("{gap:.2e} m  {density:.3e} 1/m");
-    /// }
-    /// # Ok::<(), Error>(())
-    /// ```
-    ///
-    /// # Errors
-    /// If `bins` is 0 or more than a million, or there is no memory for the gap.
-    pub fn gap_distribution(&self, bins: usize) -> Result<Distribution> {
-        self.covers(coverage::DISTRIBUTION)?;
-        let gap = self.gap()?;
-        let touchable = gap.iter().filter(|h| h.is_finite()).count();
-        // a cell under pressure counts as gap 0
-        let open = gap.iter().zip(self.pressure()).filter(|(h, p)| h.is_finite() && **h > 0.0 && **p == 0.0);
-        Distribution::new(open.map(|(h, _)| *h), touchable, bins)
     }
 
     /// Pressure, displacement, gap and net traction along the line of cells in the direction of `along` that contains
@@ -241,32 +207,6 @@ impl Fields<'_> {
     pub fn patches(&self) -> Result<Patches> {
         self.covers(coverage::PATCHES)?;
         Patches::new(self.grid(), self.pressure(), self.kernel().periodic_axes())
-    }
-
-    /// Position and skewness of the contact relative to the point `about` \[m\], such as the lowest point of a roller;
-    /// `None` without contact. Several patches count as one contact. Where the bodies are periodic, each cell counts at
-    /// its periodic image nearest to the point, and the centre of pressure may lie beyond the grid.
-    ///
-    /// ```
-    /// use viscocontact::prelude::*;
-    ///
-    /// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
-    ///     .geometry(&Sphere::new(10.0e-3)?)
-    ///     .material(Material::incompressible(Maxwell::with_time(1.0e6, 1.0)?))
-    ///     .build()?;
-    /// assert_eq!(contact.fields().asymmetry([0.0; 2])?, None);
-    /// contact.step(0.0, Load::force(0.5))?;
-    /// let asymmetry = contact.fields().asymmetry([0.0; 2])?.expect("in contact");
-    /// assert!(asymmetry.skewness()[0].abs() < 1e-12);
-    /// # Ok::<(), Error>(())
-    /// ```
-    ///
-    /// # Errors
-    /// If a coordinate is not finite.
-    pub fn asymmetry(&self, about: [f64; 2]) -> Result<Option<Asymmetry>> {
-        self.covers(coverage::ASYMMETRY)?;
-        let about = [finite("point along x1", about[0])?, finite("point along x2", about[1])?];
-        Ok(Asymmetry::new(self.grid(), self.pressure(), self.kernel().periodic_axes(), about))
     }
 
     /// The values of a field along a line of cells, of all ranks.

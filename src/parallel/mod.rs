@@ -48,7 +48,7 @@
 //! | symmetry: half or a quarter of the grid | loads that break a symmetry that was found (set [`Settings::symmetry`](crate::contact::Settings::symmetry) to false) |
 //! | force and approach, tilts, runs in steps given or chosen by their error | indenters that move or change, [`Frame::Indenter`](crate::contact::Frame::Indenter) |
 //! | snapshots in memory; checkpoints, which any number of ranks resumes | checkpoints of a window of the grid ([`Settings::window`](crate::contact::Settings::window)), or of indenters that have moved |
-//! | [files](crate::output): NPZ, NPY, VTK, histories; profiles | pictures, patches, distributions, asymmetry, stresses, [`mesh_error`](crate::fields::Fields::mesh_error) |
+//! | [files](crate::output): NPZ, NPY, VTK, histories; profiles | pictures, patches, stresses, [`mesh_error`](crate::fields::Fields::mesh_error) |
 //!
 //! Surfaces that attract each other are refused, too.
 //!

@@ -46,17 +46,8 @@ pub(crate) struct Body {
 pub(crate) enum Volume {
     /// C(t) over the creep compliance of the rheology, the same at all times, and Poisson's ratio.
     Proportional { factor: f64, poisson: f64 },
-    /// A bulk of this modulus at t = 0: the exact series of C(t), and 1 − 2ν.
-    Bulk(f64, CreepSpectrum, Compressibility),
-}
-
-/// 1 − 2ν as a function of time after a step of load, `last` + Σ share e^(−t/time).
-#[derive(Debug, Clone)]
-pub(crate) struct Compressibility {
-    /// Its limit at long times; at all times if there are no terms.
-    pub(crate) last: f64,
-    /// Shares and retardation times \[s\].
-    pub(crate) terms: Vec<(f64, f64)>,
+    /// A bulk of this modulus at t = 0: the exact series of C(t), and Poisson's ratio unless it changes.
+    Bulk(f64, CreepSpectrum, Option<f64>),
 }
 
 impl Material {
@@ -197,7 +188,7 @@ impl Material {
         let stiffened = RelaxationSpectrum::new(equilibrium, factor * shear.viscosity(), &terms)?.creep();
         let contact = creep.scaled(0.25)?.plus(&stiffened.scaled(0.75)?)?;
         let at_once = bulk.constant + if bulk.per_shear > 0.0 { bulk.per_shear / creep.glassy() } else { 0.0 };
-        let volume = Volume::Bulk(at_once, contact, Compressibility::new(&bulk, &stiffened));
+        let volume = Volume::Bulk(at_once, contact, bulk.poisson(&stiffened));
         Ok(Material::with_volume(rheology, volume))
     }
 
@@ -242,15 +233,7 @@ impl Material {
     pub fn poisson_ratios(&self) -> impl Iterator<Item = Option<f64>> {
         self.bodies.iter().map(|body| match &body.volume {
             Volume::Proportional { poisson, .. } => Some(*poisson),
-            Volume::Bulk(_, _, Compressibility { last, terms }) => terms.is_empty().then_some(0.5 * (1.0 - last)),
-        })
-    }
-
-    /// 1 − 2ν of a body, `None` if that body is absent.
-    pub(crate) fn compressibility(&self, body: usize) -> Option<Compressibility> {
-        self.bodies.get(body).map(|body| match &body.volume {
-            Volume::Proportional { poisson, .. } => Compressibility { last: 1.0 - 2.0 * poisson, terms: Vec::new() },
-            Volume::Bulk(_, _, compressibility) => compressibility.clone(),
+            Volume::Bulk(_, _, poisson) => *poisson,
         })
     }
 
@@ -358,16 +341,14 @@ struct Bulk {
     per_shear: f64,
 }
 
-impl Compressibility {
-    /// 1 − 2ν of a body with bulk modulus B = b + c G: with H = 3B + G, of which `stiffened` is the creep, 3G/H is
-    /// (3 − 9b/H)/(1 + 3c).
-    fn new(bulk: &Bulk, stiffened: &CreepSpectrum) -> Compressibility {
-        let scale = 1.0 / (1.0 + 3.0 * bulk.per_shear);
-        let factor = 9.0 * bulk.constant * scale;
-        let terms: Vec<_> = stiffened.terms().iter().map(|&(share, time)| (factor * share, time)).collect();
-        let all = stiffened.glassy() + stiffened.terms().iter().map(|(share, _)| share).sum::<f64>();
+impl Bulk {
+    /// Poisson's ratio of a body that does not creep in H = 3B + G, of which `stiffened` is the creep; else it changes.
+    /// 1 − 2ν = 3G/H is (3 − 9b/H)/(1 + 3c) with B = b + c G.
+    fn poisson(&self, stiffened: &CreepSpectrum) -> Option<f64> {
+        let scale = 1.0 / (1.0 + 3.0 * self.per_shear);
         // of a body that flows, or is much stiffer in bulk, the difference is rounding of either sign
-        Compressibility { last: (3.0 * scale - factor * all).max(0.0), terms }
+        let compressibility = (3.0 * scale - 9.0 * self.constant * scale * stiffened.glassy()).max(0.0);
+        stiffened.terms().is_empty().then_some(0.5 * (1.0 - compressibility))
     }
 }
 

@@ -103,7 +103,7 @@ pub use kelvin_voigt::KelvinVoigt;
 pub use kww::Kww;
 pub use log_creep::LogCreep;
 pub use material::Material;
-pub(crate) use material::{Compressibility, Volume};
+pub(crate) use material::Volume;
 pub use maxwell::Maxwell;
 pub use power_law::PowerLaw;
 pub use series::CreepSeries;

@@ -40,12 +40,6 @@ pub struct ErrorBudget {
     /// not include its course within the first step. It is down to 0.02 times under a given motion of bodies that begin
     /// to touch, when the first cells touch in part.
     pub time: Option<f64>,
-    /// Maximum estimated error in time of a step in a single cell, relative to the mean in contact. It bounds the
-    /// error of the pressure at a point, and of the maximum pressure. It is largest where a body meets cells faster
-    /// than the steps resolve, which hardly changes its approach. Where a given approach is to return to a surface
-    /// that recovers, or a force jumps up, it includes the error of the cells that the body may meet. `None` before
-    /// the first step.
-    pub pressure: Option<f64>,
     /// Maximum estimated error in time of the fields that were sampled so far, Σ |δp| over Σ p
     /// ([`Run::fields_to`](crate::run::Run::fields_to)). The L2 error is about twice as large, relative to the field,
     /// and the error of the maximum pressure five times. `None` if none has an estimate.
@@ -58,11 +52,11 @@ pub struct ErrorBudget {
     pub solver: f64,
 }
 
-/// One line: `error in time 1.2e-3 (pressure 2.0e-2), mesh: approach 1.0e-3, ...; solver 9.8e-7`.
+/// One line: `error in time 1.2e-3, mesh: approach 1.0e-3, ...; solver 9.8e-7`.
 impl fmt::Display for ErrorBudget {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let known = |error: Option<f64>| error.map_or("not estimated".into(), |error| format!("{error:.1e}"));
-        write!(f, "error in time {} (pressure {}), ", known(self.time), known(self.pressure))?;
+        write!(f, "error in time {}, ", known(self.time))?;
         self.field.map_or(Ok(()), |field| write!(f, "fields {field:.1e}, "))?;
         f.write_str("mesh: ")?;
         match self.mesh {

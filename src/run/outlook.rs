@@ -6,7 +6,6 @@ use crate::equilibrium::pressed::Pressed;
 use crate::error::Result;
 use crate::extent::Extent;
 use crate::hereditary::{Interval, Meeting, StepContext, WEIGHTS};
-use crate::load::Load;
 use crate::run::control::Course;
 use crate::run::step_control::StepControl;
 use crate::run::track::is_held;
@@ -61,15 +60,12 @@ impl StepControl {
         let meeting = meetings.reduce(Meeting::worst).unwrap_or(Meeting::NONE);
         let expected = bodies().map(|(track, load)| track.scale.expected(scene, load, age));
         let greatest = || bodies().map(|(track, _)| track.scale.greatest_potential()).fold(0.0, f64::max);
-        let jumps = step.loads.iter().zip(histories.each());
         Ok(StepContext {
             expected: expected.fold([0.0; 2], |[a, b], [c, d]| [f64::max(a, c), f64::max(b, d)]),
             meeting: Meeting { stiffness: meeting.stiffness.max(soon), ..meeting },
             lasting: self.past.lasting(),
             on_switch,
             greatest_on_switch: if on_switch[1] > 0.0 { greatest() } else { 0.0 },
-            on_jump: jumps
-                .fold(0.0, |most, (load, history)| stiffness_on_jump(scene, load, &history.at(time)).max(most)),
             is_last: time == kink && !histories.each().all(|history| is_held(history, clock.time, time)),
             agreement: self.past.agreement(),
             steps: self.past.count() + 1.0,
@@ -93,20 +89,6 @@ impl StepControl {
         let glassy = if compliance(0.0) > 0.0 { compliance(0.0) } else { compliance(touch) };
         let responses = [dt, age].map(|length| (compliance(left + length) - compliance(left)) / glassy);
         Ok(responses.map(|response| response * (WEIGHTS.most_on_switch / responses[1]).min(1.0)))
-    }
-}
-
-/// The response of v to an error of u of the cells that are met where the load jumps, if a force does so upwards:
-/// glassy.
-fn stiffness_on_jump(scene: &Scene, before: &Load, after: &Load) -> f64 {
-    let compliance = scene.material.contact_compliance(0.0);
-    match (before, after) {
-        (Load::Force { normal: before, .. }, Load::Force { normal: after, .. })
-            if after > before && compliance > 0.0 =>
-        {
-            1.0 / compliance
-        }
-        _ => 0.0,
     }
 }
 

@@ -42,8 +42,8 @@ impl Stepping {
     /// Steps whose estimated error in time is at most `tolerance`, in \[1e-9, 0.1\]: the error of the approach under
     /// a given force, the error of the force under a given approach, of both under a spring. It is relative to the
     /// displacement or force; for small values it is relative to a fraction of the largest of the run. Errors of the
-    /// pressure at a point may be larger, see [`ErrorBudget::pressure`](crate::run::ErrorBudget::pressure). The
-    /// tolerance of the solver is 0.03 of `tolerance`, 1e-6 at least, or
+    /// pressure at a point may be larger where a body meets cells faster than the steps resolve. The tolerance of the
+    /// solver is 0.03 of `tolerance`, 1e-6 at least, or
     /// [`Settings::tolerance`](crate::contact::Settings::tolerance) where that is set below 1e-6.
     ///
     /// Such a run looks at the whole history before its first step, at 4096 equal parts and at its breakpoints: a

@@ -297,10 +297,9 @@ impl StepControl {
 
     /// Includes the errors of a step with this residual of its contact problem.
     pub(super) fn include(&mut self, error: &TimeError, residual: f64) {
-        let ErrorBudget { time, pressure, solver, .. } = &mut self.worst;
+        let ErrorBudget { time, solver, .. } = &mut self.worst;
         let in_time = error.relative.max(error.lasting);
         *time = Some(time.map_or(in_time, |worst| worst.max(in_time)));
-        *pressure = Some(pressure.map_or(error.greatest, |worst| worst.max(error.greatest)));
         *solver = solver.max(residual);
     }
 }

@@ -9,9 +9,7 @@ use num_complex::Complex64;
 use super::coefficients::{RowOfCells, Rules};
 use super::coverage;
 use super::creep::Creep;
-use super::layer_on_base::LayerOnBase;
 use super::operator::{Coefficients, MovingBodies};
-use crate::contact::Warnings;
 use crate::error::{Error, Refusal, Result};
 use crate::fft::{real_rows, wave_numbers};
 use crate::kernel::InfluenceKernel;
@@ -27,8 +25,6 @@ const ENDLESS: f64 = 1e12;
 pub(super) struct Bodies {
     pub(super) kernel: Arc<InfluenceKernel>,
     pub(super) creep: Creep,
-    /// A layer on a base that creeps otherwise.
-    pub(super) layer: Option<LayerOnBase>,
     /// Influences along rows of a motion along either axis.
     pub(super) rows: [OnceLock<Vec<RowOfCells>>; 2],
     /// The shortest and the longest time at which the materials of the moving pressure were
@@ -38,8 +34,6 @@ pub(super) struct Bodies {
     pub(super) relaxed: bool,
     /// The part of the relaxed compliance that is extrapolated in a counter-body that slides.
     pub(super) unmeasured_at_rest: f64,
-    /// What warns whatever the motion.
-    pub(super) warnings: Warnings,
 }
 
 debug_by!(self: Bodies => kernel: self.kernel);
@@ -92,10 +86,7 @@ impl Bodies {
             let (mut factor, mut lost) = (Complex64::ZERO, [0.0; 2]);
             for q in both {
                 let omega = q[0] * velocity[0] + q[1] * velocity[1];
-                let own = match &self.layer {
-                    Some(layer) if k != [0, 0] => layer.compliance(q[0].hypot(q[1]), omega),
-                    _ => self.kernel.of_wave(k) * self.creep.at(omega),
-                } / (signs[0].len() * signs[1].len()) as f64;
+                let own = self.kernel.of_wave(k) * self.creep.at(omega) / (signs[0].len() * signs[1].len()) as f64;
                 let gains = own.im * omega.signum() < -ROUNDING * own.norm();
                 if !(own.re > 0.0 && own.im.is_finite() && !gains || own == Complex64::ZERO) {
                     return Err(self.not_passive(omega.abs()));
@@ -114,7 +105,7 @@ impl Bodies {
         let (grid, rules) = (self.kernel.grid(), Rules::new());
         let [n, aside] = [grid.cells()[axis], grid.cells()[1 - axis]];
         let rows = self.rows[axis].get_or_init(|| {
-            let own = self.kernel.rows_along(axis, self.layer.as_ref().map(|_| 0.0)).unwrap_or_default();
+            let own = self.kernel.rows_along(axis).unwrap_or_default();
             own.into_iter().map(|own| RowOfCells::new(own, n, grid.spacing()[axis], &rules)).collect()
         });
         let mut reaches = self.creep.reaches(speed);
@@ -124,9 +115,6 @@ impl Bodies {
         }
         let mut coefficients = Coefficients::zero(rows.len(), n);
         rows.iter().enumerate().for_each(|(j, row)| coefficients.add(j, row, &reaches, &rules));
-        if let Some(layer) = &self.layer {
-            layer.add_along((axis, speed), &mut coefficients, &rules);
-        }
         if self.kernel.periodic_axes()[1 - axis] { coefficients.of_waves_aside(aside) } else { coefficients }
     }
 
@@ -140,10 +128,7 @@ impl Bodies {
             let at = if axis == 0 { [k, i] } else { [i, k] };
             self.kernel.of_wave(at) * self.creep.at(waves[k] * speed)
         };
-        let table = match &self.layer {
-            Some(layer) => layer.of_waves((axis, speed), &waves),
-            None => (0..aside).map(|i| (0..waves.len()).map(|k| of(i, k)).collect()).collect(),
-        };
+        let table: Vec<Vec<Complex64>> = (0..aside).map(|i| (0..waves.len()).map(|k| of(i, k)).collect()).collect();
         // the shortest wave is its own mirror image
         let part = |i: usize, k: usize| if 2 * k == n { table[i][k].re.into() } else { table[i][k] } / n as f64;
         let along = |part: &dyn Fn(usize, usize) -> Complex64, distances: Range<usize>| {

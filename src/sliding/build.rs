@@ -6,18 +6,16 @@ use num_complex::Complex64;
 
 use super::bodies::Bodies;
 use super::creep::Creep;
-use super::layer_on_base::{LayerOnBase, THINNEST};
 use super::{SteadySliding, coverage, gmres};
-use crate::contact::{Builder, Frame, Limits, Scene, Warnings};
+use crate::contact::{Builder, Frame, Scene};
 use crate::equilibrium::{Ground, Held, Indenter, Region};
-use crate::error::{Refusal, Result, Special};
+use crate::error::{Result, Special};
 use crate::fields::View;
 use crate::geometry::{Gap, Missed};
 use crate::kernel::HalfSpace;
 use crate::memory;
 use crate::motion::CounterMotion;
 use crate::rheology::{CreepSpectrum, Elastic, Material};
-use crate::rounded::rounded;
 
 /// Whether a gap changes at one place along a periodic axis by far more than anywhere else: a
 /// height map that does not repeat has a step where its end meets its beginning, wherever its
@@ -53,9 +51,6 @@ fn bytes(cells: [usize; 2], periodic: [bool; 2]) -> u64 {
     response + inverse + nodes + 8 * (2 * gmres::MOST as u64 + 12) * n1 * n2
 }
 
-/// Relative difference of ratios that is rounding.
-const SAME_RATIO: f64 = 1e-6;
-
 fn series(material: &Material) -> Result<Creep> {
     material.spectrum_for("a motion").map(Creep::Series)
 }
@@ -89,36 +84,6 @@ impl CreepInMotion {
     }
 }
 
-/// The layer of the kernel on a base that creeps otherwise.
-fn on_base(scene: &Scene, creep: &Creep, base: &Material) -> Result<LayerOnBase> {
-    let Scene { ground: Ground { grid, kernel, .. }, material, .. } = scene;
-    let layer = kernel.layer_of().copied().filter(|layer| !layer.is_on_rigid());
-    let layer = layer.ok_or(coverage::BASE_OF_NO_LAYER.error())?;
-    let same = crate::Layer::bonded_to_material(layer.thickness(), material, base)?;
-    let ratio = same.longest_over_half_space() / layer.longest_over_half_space();
-    let other = (ratio - 1.0).abs() > SAME_RATIO || same.base_poisson() != layer.base_poisson();
-    coverage::OTHER_BASE.refuse_if(|_| other)?;
-    let ends = (0..2).filter(|&axis| !kernel.periodic_axes()[axis]);
-    let (thickness, length) = (layer.thickness(), ends.map(|axis| grid.lengths()[axis]).fold(0.0, f64::max));
-    if length > THINNEST * thickness {
-        let what = format!(
-            "the grid is {} m long, {} times the thickness of a layer on a base that creeps otherwise, of which 64 \
-             are covered",
-            rounded(length, 4),
-            rounded(length / thickness, 3)
-        );
-        let remedy = format!(
-            ": shorten the grid to {} m, or take a body that is periodic along both axes",
-            rounded(THINNEST * thickness, 4)
-        );
-        return Err(Refusal::unsupported("sliding_thin_layer", what, &remedy)
-            .naming("length of the grid")
-            .valued(length)
-            .into());
-    }
-    Ok(LayerOnBase { layer, own: creep.clone(), base: series(base)?, kernel: kernel.clone() })
-}
-
 impl Builder {
     /// Whether a creeping counter-body slides or rolls in a steady motion:
     /// [`Builder::build_sliding`] needs to know. Steps do not, in which bodies that both creep roll
@@ -143,19 +108,7 @@ impl Builder {
     /// other, there are several rigid bodies, ranks, or a history of the temperature: scale the
     /// velocity by the shift factor instead.
     pub fn build_sliding(self) -> Result<SteadySliding> {
-        self.sliding(None, None)
-    }
-
-    /// [`Builder::build_sliding`] on a layer whose base creeps otherwise, or not: a rubber sheet on
-    /// steel. The kernel belongs to a layer that
-    /// [`Layer::bonded_to_material`](crate::Layer::bonded_to_material) made.
-    ///
-    /// # Errors
-    /// As [`Builder::build_sliding`]; if the kernel belongs to another layer, the base has no
-    /// series, or flows; if the body is not periodic along both axes, and a side of the grid is
-    /// more than 64 times as long as the layer is thick.
-    pub fn build_sliding_on(self, base: Material) -> Result<SteadySliding> {
-        self.sliding(Some(base), None)
+        self.sliding(None)
     }
 
     /// [`Builder::build_sliding`] on a body of which the complex contact modulus E* = 1/C \[Pa\] is
@@ -171,7 +124,7 @@ impl Builder {
         modulus: impl Fn(f64) -> Complex64 + Send + Sync + 'static,
     ) -> Result<SteadySliding> {
         self = self.material(Material::incompressible(Elastic::new(0.25 * modulus(0.0).re)?));
-        self.sliding(None, Some(Creep::Modulus(Arc::new(modulus))))
+        self.sliding(Some(Creep::Modulus(Arc::new(modulus))))
     }
 
     /// Bytes of a contact in steady motion at most, with all cells in contact: of
@@ -199,7 +152,7 @@ impl Builder {
         Ok((scene, indenter, missed))
     }
 
-    fn sliding(mut self, base: Option<Material>, modulus: Option<Creep>) -> Result<SteadySliding> {
+    fn sliding(mut self, modulus: Option<Creep>) -> Result<SteadySliding> {
         self.is_covered(Special::SteadyMotion)?;
         self.settings = self.settings.with_symmetry(false).with_window(false).with_frame(Frame::Bodies);
         memory::check("a contact in steady motion", self.sliding_memory()?.into())?;
@@ -208,30 +161,22 @@ impl Builder {
         let Scene { ground: Ground { grid, kernel, .. }, material, .. } = &scene;
         let periodic = kernel.periodic_axes();
         let mut ends = (0..2).filter(|&axis| !periodic[axis]);
-        let has_rows = periodic == [true; 2] || ends.any(|axis| kernel.rows_along(axis, Some(0.0)).is_some());
+        let has_rows = periodic == [true; 2] || ends.any(|axis| kernel.has_rows_along(axis));
         let jumps = jumps(&indenter.gap().above, grid.cells(), periodic);
         let (by_modulus, pair) = (modulus.is_some(), material.poisson_ratios().count() > 1);
         coverage::COEFFICIENTS.refuse_if(|_| !has_rows)?;
         coverage::JUMPING_SHAPE.refuse_if(|_| jumps)?;
         coverage::MODULUS.refuse_if(|_| by_modulus && periodic != [true; 2])?;
         coverage::MODULUS_OF_TWO.refuse_if(|_| by_modulus && pair)?;
-        let CreepInMotion { creep, mut measured, unmeasured_at_rest } = match modulus {
+        let CreepInMotion { creep, measured, unmeasured_at_rest } = match modulus {
             Some(creep) => CreepInMotion { creep, measured: material.measured(), unmeasured_at_rest: 0.0 },
             None => CreepInMotion::of(material, motion)?,
         };
         let flows = creep.fluidity() > 0.0 && kernel.half_space_below() != Some(HalfSpace::LoadedOnGrid);
         coverage::FLOW.refuse_if(|_| flows)?;
-        let mut warnings = Warnings::empty();
-        if let Some(base) = &base {
-            let [from, until] = base.measured();
-            measured = [measured[0].max(from), measured[1].min(until)];
-            warnings = Limits::of(base).warnings(0.0, 0.0);
-        }
-        let layer = base.map(|base| on_base(&scene, &creep, &base)).transpose()?;
-        let is_relaxed = |own: &Creep| own.is_relaxed(measured[1]);
-        let relaxed = is_relaxed(&creep) && layer.as_ref().is_none_or(|layer| is_relaxed(&layer.base));
+        let relaxed = creep.is_relaxed(measured[1]);
         let (kernel, rows) = (kernel.clone(), Default::default());
-        let bodies = Arc::new(Bodies { kernel, creep, layer, rows, measured, relaxed, unmeasured_at_rest, warnings });
+        let bodies = Arc::new(Bodies { kernel, creep, rows, measured, relaxed, unmeasured_at_rest });
         let mut held = Held::layout(Arc::new(indenter), Region::whole(grid, [false; 2]));
         let displacement = vec![0.0; grid.len()];
         held.current.solution.pressure.clone_from(&displacement);

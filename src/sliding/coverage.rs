@@ -3,8 +3,6 @@
 use crate::error::Special::SteadyMotion;
 use crate::error::coverage::not_covered;
 
-const LAYER: &str = "make the layer by Layer::bonded_to_material";
-
 not_covered! {
     COEFFICIENTS: "a body of coefficients", SteadyMotion: "take InfluenceKernel::from_spectrum or a layer";
     JUMPING_SHAPE: "a shape that jumps once in the period of its body",
@@ -20,10 +18,6 @@ not_covered! {
     FLOW: "a body that flows",
         SteadyMotion: "take a half-space, or an equilibrium modulus: one approach or slope grows for ever";
     DRIFT: "a body that flows, under an approach or at rest,", SteadyMotion: "give a force and a velocity";
-    BASE_OF_NO_LAYER: "a base below another body than a layer", SteadyMotion: LAYER;
-    CHANGING_RATIO: "a layer or base whose Poisson's ratio changes, or of two bodies,",
-        SteadyMotion: "make it by Material::incompressible or Material::constant_poisson";
-    OTHER_BASE: "a base of another ratio than the layer's", SteadyMotion: LAYER;
     SPRING: "a body on a spring", SteadyMotion: "give the force or the approach";
     NEAR_DATUM: "a line load of given approach whose datum is nearer than the grid and the longest memory of the \
         motion",

@@ -16,7 +16,6 @@ mod coverage;
 mod creep;
 mod csv;
 mod gmres;
-mod layer_on_base;
 mod operator;
 mod report;
 mod search;
@@ -191,7 +190,6 @@ impl SteadySliding {
         let (mut warnings, mut figures) = self.take(load, motion, pressure, displacement);
         figures.unmeasured = Some(unmeasured.max(self.bodies.unmeasured_at_rest)).filter(|part| *part > UNMEASURED);
         warnings.set(Warnings::FREQUENCIES, figures.unmeasured.is_some());
-        warnings |= self.bodies.warnings;
         let fields = self.fields();
         let gaps: Vec<f64> = fields.gap()?.into_iter().filter(|gap| gap.is_finite()).collect();
         Ok(SlidingReport {
@@ -245,8 +243,7 @@ impl SteadySliding {
         let bodies = self.bodies.moving(velocity)?;
         let (axis, lengths) = (self.bodies.axis(velocity).unwrap_or(0), self.scene.ground.grid.lengths());
         let speed = if kernel.periodic_axes()[axis] { 0.0 } else { velocity[axis].abs() };
-        let all = [Some(creep), self.bodies.layer.as_ref().map(|layer| &layer.base)].into_iter().flatten();
-        let farthest = all.flat_map(|own| own.reaches(speed)).map(|(_, reach)| reach).fold(0.0, f64::max);
+        let farthest = creep.reaches(speed).into_iter().map(|(_, reach)| reach).fold(0.0, f64::max);
         let near = !forced && kernel.datum().is_some_and(|datum| datum < lengths[axis] + farthest);
         coverage::NEAR_DATUM.refuse_if(|_| near)?;
         Ok(bodies)

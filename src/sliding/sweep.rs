@@ -101,7 +101,7 @@ impl SteadySliding {
             Some((law, kelvins)) => kelvins.iter().map(|&kelvin| shift(law, kelvin)).collect::<Result<_>>()?,
             None => vec![(None, 1.0, 1.0)],
         };
-        let in_proportion = self.bodies.layer.is_none() && self.scene.material.is_one_body_in_proportion();
+        let in_proportion = self.scene.material.is_one_body_in_proportion();
         if !in_proportion && shifts.iter().any(|(_, _, vertical)| *vertical != 1.0) {
             return Err(vertical_factors("a sweep over temperatures"));
         }

@@ -14,7 +14,6 @@ mod rigid_motion;
 mod row_segments;
 #[cfg(feature = "observe")]
 mod stiffness;
-mod trace;
 
 pub(crate) use active_set::ActiveSet;
 pub(crate) use bands::Bands;
@@ -35,4 +34,3 @@ use passes::{Passes, Search, add};
 use preconditioner::Preconditioner;
 use rigid_motion::Line;
 use row_segments::{Cut, PIECE_CELLS, Piece, RowSegments};
-use trace::Trace;

@@ -72,8 +72,8 @@ impl ResidualSums {
         ResidualSums { greatest_gap: set.greatest_gap, cells: set.count(), ..ResidualSums::default() }
     }
 
-    /// Writes the relative residual and its rounding to `solution`, and the residual to its trace. `guess_rounding`
-    /// is the rounding of the guess. The step judges convergence and warns of rounding by them.
+    /// Writes the relative residual and its rounding to `solution`. `guess_rounding` is the rounding of the guess. The
+    /// step judges convergence and warns of rounding by them.
     pub(crate) fn note(&mut self, problem: &Problem<'_>, guess_rounding: f64, solution: &mut Solution) {
         self.cancellation = problem.displacement_rounding(&solution.pressure) + guess_rounding;
         // where a rank is lost, the sums are NaN, which ends the iterations
@@ -87,7 +87,6 @@ impl ResidualSums {
         } else {
             0.0
         };
-        solution.trace.note(solution.counts.iterations, solution.residual);
     }
 
     /// The residual of a state, relative to rms (c v) in contact: the larger of rms |h| in contact

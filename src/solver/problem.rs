@@ -2,7 +2,7 @@
 
 use std::sync::atomic::AtomicBool;
 
-use super::{Cut, Freedom, Line, ModeCoefficients, Modes, Trace};
+use super::{Cut, Freedom, Line, ModeCoefficients, Modes};
 use crate::kernel::{LocalKernel, Workspace};
 use crate::parallel::Rows;
 use crate::sum::greatest;
@@ -49,15 +49,11 @@ pub(crate) struct Solution {
     /// Where surfaces attract each other, an estimate of the least curvature of the energy along any direction, over
     /// the curvature of its convex part; 0 where none is known.
     pub(crate) stiffness: f64,
-    /// The residual over the iterations.
-    #[cfg_attr(feature = "checkpoint", serde(skip))]
-    pub(crate) trace: Trace,
 }
 
 clone_by_fields! {
     Solution {
         pressure, potential, attraction, motions, counts, residual, relative_rounding, stiffness,
-        trace,
     }
 }
 

@@ -255,7 +255,7 @@ impl AnyScene {
         contact: &mut ViscoelasticContact,
         from: usize,
         after: &mut dyn FnMut(Stepper, StepReport) -> Result<bool, Error>,
-    ) -> ([f64; 4], Option<Error>) {
+    ) -> ([f64; 3], Option<Error>) {
         match &self.steps {
             Steps::Given(steps) => {
                 let mut take = |&(dt, load): &(f64, Load)| {
@@ -263,7 +263,7 @@ impl AnyScene {
                     after(Stepper::Contact(contact), report)
                 };
                 let ended = steps[from..].iter().map(&mut take).find(|taken| !matches!(taken, Ok(true)));
-                ([0.0; 4], ended.and_then(Result::err))
+                ([0.0; 3], ended.and_then(Result::err))
             }
             Steps::Along(history, stepping, until) => {
                 let mut run = contact.follow(history, *stepping, *until);
@@ -275,8 +275,7 @@ impl AnyScene {
                     }
                 };
                 let budget = run.error_budget();
-                let numbers = [budget.time.unwrap_or(-1.0), budget.pressure.unwrap_or(-1.0), budget.solver];
-                ([numbers[0], numbers[1], numbers[2], run.rejected_steps() as f64], ended)
+                ([budget.time.unwrap_or(-1.0), budget.solver, run.rejected_steps() as f64], ended)
             }
         }
     }

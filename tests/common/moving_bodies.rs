@@ -65,8 +65,8 @@ pub enum Base {
     None,
     Rigid,
     Frictionless,
-    /// A half-space of its own creep.
-    Body(Creep),
+    /// A half-space that creeps alike, so many times as much.
+    Body(f64),
 }
 
 /// A half-space or a layer, loaded on a grid.
@@ -139,8 +139,9 @@ impl Bodies {
             Base::None => return None,
             Base::Rigid => Layer::bonded_to_rigid(self.thickness, self.nu),
             Base::Frictionless => Layer::frictionless_on_rigid(self.thickness, self.nu),
-            Base::Body(base) => {
-                Layer::bonded_to_material(self.thickness, &self.creep.material(self.nu), &base.material(self.base_nu))
+            Base::Body(times) => {
+                let shear_ratio = times * (1.0 - self.nu) / (1.0 - self.base_nu);
+                Layer::bonded_to_half_space(self.thickness, self.nu, shear_ratio, self.base_nu)
             }
         };
         Some(made.unwrap())
@@ -198,39 +199,40 @@ impl Bodies {
         })
     }
 
-    /// L of the wave q that passes at this frequency (D. M. Burmister, 1945; Lebedev & Ufliand, 1958).
-    fn response(&self, q: f64, omega: f64) -> Complex64 {
+    /// L of the wave q (D. M. Burmister, 1945; Lebedev & Ufliand, 1958).
+    fn response(&self, q: f64) -> f64 {
         let t = q * self.thickness;
-        let one = Complex64::ONE;
         // Burmister's (1 + 4tθκ − λκθ²) / (1 − (λ + κ(1 + 4t²)) θ + λκθ²), θ = e^(−2t), as sums of positive numbers: a stiff
         // layer leaves no digits of the denominator
-        let bonded = |mu: Complex64| {
+        let bonded = |mu: f64| {
             let [k1, k2] = [3.0 - 4.0 * self.nu, 3.0 - 4.0 * self.base_nu];
-            let (kappa, a, b) = ((mu - 1.0) / (mu + k1), (1.0 + k1) / (one + mu * k2), (1.0 + k1) / (mu + k1));
+            let (kappa, a, b) = ((mu - 1.0) / (mu + k1), (1.0 + k1) / (1.0 + mu * k2), (1.0 + k1) / (mu + k1));
             let (theta, less) = ((-2.0 * t).exp(), -(-2.0 * t).exp_m1());
             let bends = theta * 4.0 * sinh_less(t) * (t.sinh() + t);
             let top = -(-4.0 * t).exp_m1() + theta * theta * (a + b - a * b) + 4.0 * t * theta * kappa;
             top / (bends + theta * less * (a + b) + a * b * theta * theta + 4.0 * t * t * theta * b)
         };
         match &self.base {
-            _ if t > 60.0 => one,
-            Base::None => one,
+            _ if t > 60.0 => 1.0,
+            Base::None => 1.0,
             Base::Rigid => {
                 let k = 3.0 - 4.0 * self.nu;
                 let sinh = 2.0 * k * (2.0 * t).sinh() - 4.0 * t;
-                (sinh / (2.0 * k * (2.0 * t).cosh() + k * k + 1.0 + 4.0 * t * t)).into()
+                sinh / (2.0 * k * (2.0 * t).cosh() + k * k + 1.0 + 4.0 * t * t)
             }
-            Base::Frictionless => (2.0 * t.sinh() * t.sinh() / ((2.0 * t).sinh() + 2.0 * t)).into(),
-            Base::Body(base) => {
-                let ratio = base.at(omega) / self.creep.at(omega);
-                bonded(ratio * ((1.0 - self.nu) / (1.0 - self.base_nu)))
-            }
+            Base::Frictionless => 2.0 * t.sinh() * t.sinh() / ((2.0 * t).sinh() + 2.0 * t),
+            Base::Body(times) => bonded(times * ((1.0 - self.nu) / (1.0 - self.base_nu))),
         }
+    }
+
+    /// The compliance of the base over that of the layer.
+    fn below(&self) -> f64 {
+        if let Base::Body(times) = self.base { times } else { 0.0 }
     }
 
     /// (2/q) C₁ (L − 1).
     fn added(&self, q: f64, omega: f64) -> Complex64 {
-        2.0 / q * self.creep.at(omega) * (self.response(q, omega) - 1.0)
+        2.0 / q * self.creep.at(omega) * (self.response(q) - 1.0)
     }
 
     fn of_waves(&self, velocity: [f64; 2]) -> Influence {
@@ -250,7 +252,7 @@ impl Bodies {
                 let (length, omega) = (q[0].hypot(q[1]), q[0] * velocity[0] + q[1] * velocity[1]);
                 let own = part
                     * if length > 0.0 {
-                        2.0 / length * self.creep.at(omega) * self.response(length, omega)
+                        2.0 / length * self.creep.at(omega) * self.response(length)
                     } else {
                         let rigid = matches!(self.base, Base::Rigid | Base::Frictionless);
                         let mean = self.thickness * (1.0 - 2.0 * self.nu) / (1.0 - self.nu).powi(2);
@@ -358,8 +360,7 @@ impl Bodies {
 
     /// The longest length on which anything changes along an axis.
     fn longest(&self, axis: usize, speed: f64) -> f64 {
-        let base = if let Base::Body(base) = &self.base { &base.terms[..] } else { &[] };
-        let reaches = self.creep.terms.iter().chain(base).map(|(_, time)| speed * time);
+        let reaches = self.creep.terms.iter().map(|(_, time)| speed * time);
         reaches.fold(self.thickness.max(self.lengths()[axis]), f64::max)
     }
 
@@ -379,8 +380,8 @@ impl Bodies {
                 let total = q.hypot(kappa);
                 let along = if moves { q } else { kappa };
                 let part = weight * of_cell(q, d) * d / PI;
-                let below = if let Base::Body(base) = &self.base { base.at(along * speed) } else { Complex64::ZERO };
-                let buried = (below - self.creep.at(along * speed)) * (2.0 / total * (-DEPTH * total * h).exp());
+                let buried =
+                    (self.below() - 1.0) * self.creep.at(along * speed) * (2.0 / total * (-DEPTH * total * h).exp());
                 let own = self.added(total, along * speed) - if kappa > 0.0 { Complex64::ZERO } else { buried };
                 let wave = if moves { Complex64::from_polar(1.0, q * x) } else { Complex64::from((q * x).cos()) };
                 sum += own * wave * part;
@@ -396,15 +397,10 @@ impl Bodies {
         let Base::Body(_) = self.base else { return 0.0 };
         // −(2/π) ln is zero there, and so is the half-space; as of a line, at the datum
         let mut still = self.clone();
-        let relaxed = |creep: &Creep| Creep { glassy: creep.relaxed(), terms: Vec::new() };
-        still.creep = relaxed(&self.creep);
-        if let Base::Body(base) = &mut still.base {
-            *base = relaxed(base);
-        }
+        still.creep = Creep { glassy: self.creep.relaxed(), terms: Vec::new() };
         still.spacing[axis] = 1e-3 * self.spacing[axis];
         let (h, side) = (self.thickness, still.spacing[axis]);
-        let below = if let Base::Body(base) = &still.base { base.glassy } else { 0.0 };
-        let buried = (below - still.creep.glassy) * buried(self.datum, DEPTH * h, side, self.datum);
+        let buried = (self.below() - 1.0) * still.creep.glassy * buried(self.datum, DEPTH * h, side, self.datum);
         (still.integral(axis, self.datum, 0.0, (true, 0.0)).0.re + buried) * 1e3
     }
 
@@ -458,8 +454,8 @@ impl Bodies {
             let x = (i as f64 - (n - 1) as f64) * d;
             let (rest, lost) = self.integral(axis, x, kappa, (true, speed));
             let mut both = self.creep.of_history(if layered { &less } else { &kernel }, x, speed);
-            if let (true, Base::Body(base)) = (layered, &self.base) {
-                let of_base = base.of_history(&below, x, speed);
+            if layered {
+                let of_base = self.creep.times(self.below()).of_history(&below, x, speed);
                 (0..2).for_each(|part| both[part] += of_base[part]);
             }
             [both[0] + rest.re - at_datum, both[1] + lost]
@@ -477,8 +473,8 @@ impl Bodies {
             let (rest, lost) = self.integral(1 - axis, x, kappa, (false, speed));
             let lost = kappa * own.im + lost;
             if k == 0 && !matches!(self.base, Base::None) {
-                let below = if let Base::Body(base) = &self.base { base.relaxed() } else { 0.0 };
-                own += (below - self.creep.relaxed()) * buried(x, DEPTH * self.thickness, side, self.datum);
+                own +=
+                    (self.below() - 1.0) * self.creep.relaxed() * buried(x, DEPTH * self.thickness, side, self.datum);
                 own -= self.at_datum(1 - axis);
             }
             (own + rest, lost)

@@ -21,9 +21,8 @@ pub struct Watched {
     pub steps: u64,
     pub rejected: u64,
     pub equivalents: f64,
-    /// The error budget of the approach or force, and of the pressure.
+    /// The error budget of the approach or force.
     pub time_budget: f64,
-    pub pressure_budget: f64,
 }
 
 impl Watched {
@@ -118,8 +117,7 @@ pub fn watch(
         }
     }
     seen.rejected = run.rejected_steps();
-    let budget = run.error_budget();
-    (seen.time_budget, seen.pressure_budget) = (budget.time.unwrap_or(0.0), budget.pressure.unwrap_or(0.0));
+    seen.time_budget = run.error_budget().time.unwrap_or(0.0);
     Ok(seen)
 }
 

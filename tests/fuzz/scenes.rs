@@ -105,17 +105,8 @@ pub fn look(contact: &ViscoelasticContact, report: &StepReport, source: &mut Sou
         let of = |patch: &viscocontact::observe::Patch| [patch.area, patch.force, patch.centroid[0], patch.centroid[1]];
         known("patches", all.flat_map(of))?;
     }
-    for distribution in
-        [contact.fields().gap_distribution(5), contact.fields().pressure_distribution(5)].into_iter().flatten()
-    {
-        known("distribution", distribution.density.iter().copied())?;
-        known("distribution", distribution.centers().chain([distribution.width, distribution.share_at_zero]))?;
-    }
     if let Ok(profile) = contact.fields().profile(source.choose(&[Axis::X1, Axis::X2]), 0.0) {
         known("profile", profile.positions.into_iter().chain(profile.gap))?;
-    }
-    if let Ok(Some(asymmetry)) = contact.fields().asymmetry([0.0; 2]) {
-        known("asymmetry", asymmetry.center_of_pressure.into_iter().chain(asymmetry.skewness()))?;
     }
     if let Ok(within) = contact.within_step(time - 0.3 * dt) {
         finite("within", [within.time(), within.approach(), within.force()].into_iter().chain(within.tilt()))?;
@@ -197,7 +188,7 @@ pub fn look_along(
     }
     let budget = run.error_budget();
     let mesh = budget.mesh.map(|mesh| mesh.approach);
-    known("error budget", budget.time.into_iter().chain(budget.pressure).chain(mesh).chain([budget.solver]))
+    known("error budget", budget.time.into_iter().chain(mesh).chain([budget.solver]))
 }
 
 fn follow(source: &mut Source) -> Verdict {

@@ -10,7 +10,7 @@ use std::sync::atomic::AtomicBool;
 use viscocontact::ErrorKind::{Cancelled, Convergence, File, Memory, Unsupported, Value};
 use viscocontact::adhesion::{Attraction, Dugdale, ExponentialAttraction, VanDerWaals, laws as attraction_laws};
 use viscocontact::analytic::{Dmt, GrowingSphere, MaugisDugdale, RigidPunch, SlidingLimits};
-use viscocontact::contact::{EnergyBalance, StressHistory};
+use viscocontact::contact::EnergyBalance;
 use viscocontact::geometry::laws as shape_laws;
 use viscocontact::input::{Quantity as Read, TextTable, WantedColumn};
 use viscocontact::observe::SubsurfaceStress;
@@ -131,14 +131,10 @@ fn contacts(t: &mut Table) {
     t.row(shared(|contact| contact.fields().mesh_error()), Unsupported, "the error due to the mesh…ranks share out: compute the contact in one…");
     let attracted = builder_on(grid(), maxwell()).attraction(ExponentialAttraction::new(0.05, 1.0e-4).unwrap()).build().unwrap();
     t.row(attracted.fields().mesh_error(), Unsupported, "the error…attract each other: compute on a finer mesh…");
-    t.row(pressed().fields().pressure_distribution(1_000_001), Value, "bins = … → in [1, 1000000]");
-    t.row(undetermined().fields().stiffness_over_modulus(), Convergence, "…after 500 iterations…check its influence coefficients");
-    let layer = InfluenceKernel::layer(&grid(), Layer::bonded_to_rigid(1.0e-3, 0.5).unwrap()).unwrap();
-    let on_layer = builder_on(grid(), maxwell()).kernel(layer).build().unwrap();
-    t.row(StressHistory::new(&pressed()), Value, "pressure where the history of the stress begins = 141259… → 0: begin before…");
-    t.row(StressHistory::new(&contact(over)), Unsupported, "a history of the stress is not…Settings::with_frame");
-    t.row(StressHistory::new(&on_layer), Unsupported, "the stress…(layer of 1e-3 m, …): it must be a half-space, …");
-    t.row(StressHistory::of_counter_body(&contact(Settings::default())), Value, "a contact needs counter_body: call Builder::counter_body…");
+    let stiffness = undetermined().fields().stiffness_over_modulus();
+    assert!(stiffness.as_ref().is_err_and(|error| error.code() == "stiffness_not_converged"));
+    t.row(stiffness, Convergence, "the body hardly determines…after 500 iterations…: check its influence coefficients");
+    t.row(contact(Settings::default()).fields().stress_in_counter_body(), Value, "a contact needs counter_body: call Builder::counter_body…");
     let modulus = |modulus: f64| ElasticContact::builder(grid()).geometry(&sphere()).modulus(modulus);
     let elastic = || modulus(4.0e6).build().unwrap();
     let set = AtomicBool::new(true);
@@ -165,22 +161,7 @@ fn kernels(t: &mut Table) {
     t.row(coefficients(&|i, j| of_middle(i, j, -1.0)), Value, "…not positive definite: …check their signs…");
     t.row(InfluenceKernel::from_coefficients(&huge, |_, _| 1.0), Memory, "a kernel of coefficients needs 43980…");
     t.row(InfluenceKernel::half_space(&huge).unwrap().workspace(), Memory, "the workspace of a kernel needs 35185…bytes…take fewer cells…");
-    let steel = || Material::constant_poisson(Elastic::new(80.0e9).unwrap(), 0.3).unwrap();
-    let bulk = Material::elastic_bulk(Zener::with_time(1.0e6, 0.5e6, 0.1).unwrap(), 1.0e9).unwrap();
-    let soft = Material::incompressible(Elastic::new(1.0).unwrap());
-    let bonded = |layer: &Material, base: Material| Layer::bonded_to_material(1.0e-3, layer, &base);
-    t.row(bonded(&bulk, steel()), Unsupported, "a layer or base whose Poisson's ratio changes…");
-    t.row(bonded(&maxwell(), steel()), Value, "fluidity of a layer or its base = 2.5e-7 → 0:… an equilibrium modulus");
-    t.row(bonded(&zener(), maxwell()), Value, "fluidity of a layer or its base = 2.5e-7 → 0:… an equilibrium modulus");
-    t.row(bonded(&by_function(), steel()), Value, "a layer on a base needs an exponential series…");
-    t.row(bonded(&soft, steel()), Value, "shear modulus of a layer over that of its base = 1.25e-11 → in [1e-6, 1e6]");
-    let stiff = |modulus: f64| Material::constant_poisson(Elastic::new(modulus).unwrap(), 0.3).unwrap();
-    let on = |kernel: InfluenceKernel, base: Material| builder_on(grid(), zener()).kernel(kernel).build_sliding_on(base).map(drop);
-    let of = |thickness: f64| InfluenceKernel::layer(&grid(), Layer::bonded_to_material(thickness, &zener(), &stiff(1.0e9)).unwrap()).unwrap();
-    t.row(on(InfluenceKernel::half_space(&grid()).unwrap(), stiff(1.0e9)), Unsupported, "a base below another body than a layer is not covered…bonded_to_material");
-    t.row(on(of(1.0e-3), stiff(1.0e8)), Unsupported, "a base of another ratio than the layer's is not covered…");
-    t.row(on(of(1.0e-3), maxwell()), Value, "fluidity of a layer or its base = 2.5e-7 → 0: …");
-    t.row(on(of(0.05e-3), stiff(1.0e9)), Unsupported, "the grid is 0.004 m long, 80 times the thickness of a layer on a base…shorten the grid to 0.0032 m…");
+    t.row(Layer::bonded_to_half_space(1.0, 0.5, 1.25e-11, 0.3), Value, "shear modulus of a layer over that of its base = 1.25e-11 → in [1e-6, 1e6]");
 }
 
 #[rustfmt::skip]
@@ -192,7 +173,7 @@ fn checkpoints(t: &mut Table) {
     t.row(resume(&path), File, "…: not a checkpoint: the magic number is missing");
     pressed().save(&path).unwrap();
     let bytes = std::fs::read(&path).unwrap();
-    for (change, says) in [(8, "…: the checkpoint is of format 116, this version reads format…"), (bytes.len() - 3, "…: the checkpoint is damaged or truncated: its checksum is not that of…")] {
+    for (change, says) in [(8, "…: the checkpoint is of format 123, this version reads format…"), (bytes.len() - 3, "…: the checkpoint is damaged or truncated: its checksum is not that of…")] {
         let mut changed = bytes.clone();
         changed[change] ^= 99;
         std::fs::write(&path, changed).unwrap();

@@ -95,7 +95,7 @@ const ROOMS: [(&str, &[&str]); 17] = [
     ("laws", &["laws::"]),
     ("layers", &["Layer::"]),
     ("motion", &["step_along", "step_over", "set_geometr", "Travel::"]),
-    ("observe", &[".profile(", ".patches(", "_distribution(", ".asymmetry(", "stiffness_over_modulus", "mesh_error("]),
+    ("observe", &[".profile(", ".patches(", "stiffness_over_modulus", "mesh_error("]),
     ("output", &["CsvHistory", "FrameSeries", "output::"]),
     ("plot", &["plot::"]),
     ("sliding", &["build_sliding", "SlidingSweep"]),

@@ -1,7 +1,7 @@
 //! Moduli that change with temperature beside the times: found in a master curve, carried to every temperature, and refused where they
 //! cannot be modelled. `VERTICAL_CURVES` random curves.
 
-use crate::common::{Draws, builder_of, builder_on, from_environment, sphere};
+use crate::common::{Draws, builder_of, from_environment, sphere};
 use viscocontact::ErrorKind;
 use viscocontact::prelude::*;
 use viscocontact::rheology::{
@@ -151,8 +151,4 @@ fn what_vertical_factors_do_not_describe_is_refused() {
         assert!(sliding.sweep(&sweep(&entropic, REFERENCE)).is_ok(), "nothing changes at the reference");
         assert!(sliding.sweep(&sweep(&law, 310.0)).is_ok());
     }
-    let layer = Layer::bonded_to_material(1.0e-3, &Material::incompressible(rubber()), &steel).unwrap();
-    let kernel = InfluenceKernel::layer(&grid(), layer).unwrap();
-    let on_steel = builder_on(grid(), Material::incompressible(rubber())).kernel(kernel).build_sliding_on(steel);
-    named(on_steel.unwrap().sweep(&sweep(&entropic, 310.0)).err(), "a layer on a base");
 }

@@ -7,7 +7,6 @@ use std::f64::consts::TAU;
 use super::sliding_chains::errors;
 use crate::common::moving_bodies::{Base, Bodies, Creep};
 use crate::common::{Draws, Ratios, builder_of, from_environment};
-use viscocontact::Layer;
 use viscocontact::motion::CounterMotion;
 use viscocontact::num_complex::Complex64;
 use viscocontact::prelude::*;
@@ -252,23 +251,6 @@ fn moduli_that_give_energy_away_are_refused() {
             }
         }
     }
-}
-
-/// The length that a refusal of a thin layer names is covered.
-#[test]
-fn the_length_that_a_thin_layer_needs_is_named() {
-    let [rubber, steel] = [(1.0e-6, 0.5), (1.0e-9, 0.3)]
-        .map(|(glassy, nu)| Creep { glassy, terms: vec![(0.5 * glassy, 0.1)] }.material(nu));
-    let built = |length: f64| {
-        let grid = Grid::new([24, 16], [length, 1e-3]).unwrap();
-        let layer = Layer::bonded_to_material(20.0e-6, &rubber, &steel).unwrap();
-        let kernel = InfluenceKernel::layer(&grid, layer).unwrap();
-        builder_of(&Sphere::new(10.0e-3).unwrap(), grid, rubber.clone()).kernel(kernel).build_sliding_on(steel.clone())
-    };
-    let (error, longest) = (built(4.0e-3).unwrap_err(), 64.0 * 20.0e-6);
-    assert!(error.code() == "sliding_thin_layer" && error.value() == Some(4.0e-3), "{error}");
-    assert!(error.remedy().unwrap().starts_with(&format!("shorten the grid to {longest} m, or ")), "{error}");
-    assert!(built(longest).is_ok() && built(1.001 * longest).is_err());
 }
 
 /// Layers much thinner than a cell, whose losses cells do not resolve: bodies that would drive the motion are refused, whose

@@ -15,7 +15,6 @@ const GLASSY: f64 = 1e-6;
 #[derive(Debug, Clone)]
 struct Scene {
     bodies: Bodies,
-    base_alike: bool,
     waves: Vec<[f64; 4]>,
     radius: f64,
     /// Center and radius of a hole in the surface of the indenter.
@@ -46,13 +45,13 @@ impl Scene {
         };
         let spacing = [draws.between(0.7, 1.4), draws.between(0.7, 1.4)];
         let creep = draw_creep(draws, periodic == [true; 2]);
-        let base_alike = draws.chance(0.3);
+        let is_soft = draws.chance(0.3);
         let base = match draws.below(if number.is_multiple_of(2) { 1 } else { 5 }) {
             0 => Base::None,
             1 => Base::Rigid,
             2 => Base::Frictionless,
-            _ if base_alike => Base::Body(creep.times(draws.scale(0.05, 5.0))),
-            _ => Base::Body(draw_creep(draws, false).times(draws.scale(0.05, 5.0))),
+            _ if is_soft => Base::Body(draws.scale(1.0, 5.0)),
+            _ => Base::Body(draws.scale(0.05, 1.0)),
         };
         let bodies = Bodies {
             periodic,
@@ -82,7 +81,6 @@ impl Scene {
         });
         let mut scene = Scene {
             bodies,
-            base_alike,
             waves,
             radius: draws.scale(20.0, 400.0) * lengths[0] / 20.0,
             hole,
@@ -156,12 +154,7 @@ impl Scene {
         let shape = FnGeometry::new(move |x1: f64, x2: f64| scene.gap_at(x1, x2));
         let settings = Settings::default().with_tolerance(self.tolerance).with_edge(self.edge);
         let builder = builder_of(&shape, bodies.grid(), bodies.creep.material(bodies.nu)).kernel(bodies.kernel());
-        let builder = builder.settings(settings);
-        match &bodies.base {
-            Base::Body(base) if !self.base_alike => builder.build_sliding_on(base.material(bodies.base_nu)),
-            _ => builder.build_sliding(),
-        }
-        .unwrap()
+        builder.settings(settings).build_sliding().unwrap()
     }
 }
 

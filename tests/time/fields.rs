@@ -546,48 +546,6 @@ fn what_follows_a_run_has_its_fields() {
     assert!(followed > 10);
 }
 
-/// r = ∫ (1 − 2ν)(t − s) dp(s) of random bodies with an elastic bulk, from the fields asked for and from the steps alone.
-#[test]
-fn histories_of_the_stress_follow_fields() {
-    use viscocontact::contact::StressHistory;
-
-    let (accuracy, mut all) = (1e-3, [Ratios::default(), Ratios::default()]);
-    for number in 0..from_environment("FIELD_STRESSES", 2) {
-        let mut draws = Draws::new(number);
-        let shear = Zener::with_time(1.0e6, draws.scale(0.1e6, 1.0e6), draws.scale(0.2, 2.0)).unwrap();
-        let material = Material::elastic_bulk(shear, draws.scale(1.0e6, 1.0e7)).unwrap();
-        let (sphere, cone) = (Sphere::new(RADIUS).unwrap(), Cone::new(0.1).unwrap());
-        let shape: &dyn Geometry = if number % 2 == 0 { &sphere } else { &cone };
-        let history = Ramp::new(Load::force(0.0), Load::force(0.15), draws.between(0.3, 1.0)).unwrap();
-        let times: Vec<f64> = (1..=120).map(|k| 2.0 * (f64::from(k) / 120.0).powi(2)).collect();
-        let reduced = |stepping: Stepping, fields: bool| {
-            let builder = builder_of(shape, Grid::square(24, 6.0e-3).unwrap(), material.clone());
-            // a strict solver would serve the adaptive steps, too
-            let is_exact = stepping == Stepping::fixed(2e-3);
-            let settings = if is_exact { Settings::default().with_tolerance(1e-8) } else { Settings::default() };
-            let mut contact = builder.settings(settings).build().unwrap();
-            let mut recorded = StressHistory::new(&contact).unwrap();
-            let run = contact.follow(&history, stepping, 2.0).sample_at(&times[..]).unwrap();
-            let mut run = if fields { run.fields_to(accuracy).unwrap() } else { run };
-            while run.next_step().unwrap().is_some() {
-                for sample in run.samples().map(Result::unwrap).filter(|sample| sample.is_asked_for() || !fields) {
-                    recorded.record(sample.fields()).unwrap();
-                }
-            }
-            recorded.reduced_pressure()
-        };
-        let exact = reduced(Stepping::fixed(2e-3), false);
-        for (fields, all) in [true, false].into_iter().zip(&mut all) {
-            let found = reduced(Stepping::adaptive(1e-2), fields);
-            let off: f64 = exact.iter().zip(&found).map(|(a, b)| (a - b).abs()).sum();
-            all.push(off / exact.iter().map(|r| r.abs()).sum::<f64>() / accuracy, "");
-        }
-    }
-    all[0].print("with fields", 0);
-    all[1].print("without", 0);
-    assert!(all[0].greatest() < 2.0 && all[1].greatest() > 2.0);
-}
-
 /// Convolutions of a field at the end over the convolutions of a run for the motions alone, on 64² cells.
 #[test]
 fn a_field_costs_little_over_its_run() {

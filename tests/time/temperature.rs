@@ -2,8 +2,6 @@
 
 use approx::{assert_abs_diff_eq, relative_eq};
 use viscocontact::ErrorKind;
-use viscocontact::contact::StressHistory;
-use viscocontact::observe::Stress;
 use viscocontact::prelude::*;
 use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
 
@@ -216,25 +214,6 @@ fn series_are_fitted_over_the_reduced_times_of_a_run() {
         ErrorKind::Value,
         "the series ends with the run"
     );
-}
-
-/// What a stress remembers passes in reduced time, too.
-#[test]
-fn stress_of_a_changing_poisson_ratio_is_that_of_the_reduced_time() {
-    let polymer = || Material::elastic_bulk(zener(), 3.0e6).unwrap();
-    let factor = wlf().shift_factor(320.0).unwrap();
-    let warm = builder_on(grid(24), polymer()).temperature(TemperatureHistory::table(wlf(), &[(0.0, 320.0)]).unwrap());
-    let scenes = [(warm, factor), (builder_on(grid(24), polymer()), 1.0)];
-    let peaks = scenes.map(|(scene, factor)| {
-        let mut contact = scene.settings(settings()).build().unwrap();
-        let mut history = StressHistory::new(&contact).unwrap();
-        for (dt, force) in [(0.0, 0.2), (0.3, 0.1), (1.0, 0.3)] {
-            contact.step(dt * factor, Load::force(force)).unwrap();
-            history.record(&contact).unwrap();
-        }
-        history.stress(&contact).unwrap().maximum(&[0.2e-3, 0.4e-3, 0.6e-3, 0.8e-3], Stress::von_mises).unwrap().value
-    });
-    close(peaks[0], peaks[1], 1e-9, "von Mises stress");
 }
 
 #[test]

@@ -17,7 +17,7 @@ use crate::parallel::Rows;
 
 const MAGIC: &[u8; 8] = b"VISCOCHK";
 /// Raised with every change of the contents.
-const VERSION: u32 = 23;
+const VERSION: u32 = 24;
 /// Where the checksum is, and where what it is of begins.
 const CHECKSUM: u64 = 12;
 const CONTENTS: u64 = 16;

@@ -1,9 +1,7 @@
-//! Results of a contact: fields, scalars, observations, stress, energies, reports and warnings.
+//! Results of a contact: fields, scalars, observations, energies, reports and warnings.
 
 pub(in crate::contact) mod accessors;
 #[cfg(feature = "energies")]
 pub(in crate::contact) mod energies;
 pub(crate) mod limits;
 pub(in crate::contact) mod report;
-#[cfg(feature = "stress")]
-pub(in crate::contact) mod stress;

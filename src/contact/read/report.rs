@@ -185,7 +185,6 @@ mod tests {
         assert!(report.warnings.contains(Warnings::FEW_CELLS));
         there_and_back(&report);
         there_and_back(&contact.fields().body(0).unwrap());
-        there_and_back(&contact.fields().pressure_distribution(7).unwrap());
         there_and_back(&contact.fields().patches().unwrap().all);
         there_and_back(rubber.report());
         there_and_back(&Accuracy::FINE);

@@ -9,13 +9,9 @@ mod wave;
 #[cfg(all(test, feature = "data"))]
 mod tests;
 
-use std::f64::consts::FRAC_2_PI;
 use std::fmt;
 
-use num_complex::Complex64;
-
 pub(super) use remainder::Remainder;
-pub(crate) use wave::Bonded;
 use wave::Response;
 
 use crate::error::{Result, length, poisson_ratio, within};
@@ -46,9 +42,8 @@ const SQUEEZED: f64 = 0.02;
 /// in line contact too. The mean belongs to a layer compressed everywhere, with no free side: its oedometric
 /// compliance, zero for an incompressible one.
 ///
-/// Layer and base creep by one function C(t): the base is rigid, or creeps as the layer does. A base that creeps
-/// otherwise, or not, is modelled in steady motions
-/// ([`Builder::build_sliding_on`](crate::contact::Builder::build_sliding_on)), not in time. The layer's ν must equal
+/// Layer and base creep by one function C(t). A base that is much stiffer than the layer, as steel below rubber, is
+/// rigid; one that creeps as the layer does is a half-space ([`Layer::bonded_to_half_space`]). The layer's ν must equal
 /// the material's, and constant: the contact is refused with another one, with
 /// [`Material::elastic_bulk`](crate::rheology::Material::elastic_bulk), and with a counter body that deforms.
 ///
@@ -115,23 +110,6 @@ impl Layer {
         within("shear modulus of a layer over that of its base", shear_ratio, inside, "in [1e-6, 1e6]")?;
         let poisson = poisson_ratio("Poisson's ratio of the base", base_nu)?;
         Layer::new(thickness, nu, Base::HalfSpace { shear_ratio, poisson })
-    }
-
-    /// L of a layer bonded to a half-space whose shear modulus is 1/`mu` of the layer's, in a steady oscillation.
-    pub(crate) fn oscillating(&self, mu: Complex64) -> Bonded<Complex64> {
-        Bonded::new(self.poisson, self.base_poisson().unwrap_or(0.5), mu)
-    }
-
-    /// Poisson's ratio of a base that is a half-space.
-    pub(crate) fn base_poisson(&self) -> Option<f64> {
-        if let Base::HalfSpace { poisson, .. } = self.base { Some(poisson) } else { None }
-    }
-
-    /// What the layer adds to the displacement of the half-space at the datum of a line load, beyond the load at a
-    /// depth of 2h that the half-space lacks: under a unit pressure on a strip, over its width.
-    pub(crate) fn at_datum(&self, datum: f64) -> f64 {
-        let deep = FRAC_2_PI * (1.0 - self.longest_over_half_space()) * (2.0 * self.thickness / datum).ln();
-        Remainder::of_lines(self, self.thickness, Some(datum)).at_datum() + deep
     }
 
     fn new(thickness: f64, nu: f64, base: Base) -> Result<Layer> {

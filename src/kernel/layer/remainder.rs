@@ -87,11 +87,6 @@ impl Remainder {
         Some(Remainder::new(layer, last, |x| if k * x > FARTHEST_WAVE { 0.0 } else { fourier.integral(x) }))
     }
 
-    /// The displacement at the datum under a unit pressure on a strip, over the width of the strip.
-    pub(super) fn at_datum(&self) -> f64 {
-        self.datum
-    }
-
     /// `added` is the addition at a distance in units of the thickness.
     fn new(layer: &Layer, last: f64, added: impl Fn(f64) -> f64) -> Remainder {
         let (thickness, rules) = (layer.thickness, (1..=MOST_POINTS).map(GaussLegendre::new).collect());

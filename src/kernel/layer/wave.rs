@@ -20,10 +20,6 @@
 //! with α = 2μ² k₂ + μ (k₁ − 1)(k₂ − 1) + 2 k₁, β = a μ (1 + k₂), γ = 4μ² k₂ + μ (k₁ − 3)(k₂ − 1) + 2 (k₁ − 1): nothing
 //! cancels in D, and in N only as far as γ may be negative, which is less than β makes up for.
 
-use std::ops::Mul;
-
-use num_complex::ComplexFloat;
-
 /// Beyond this t the layer responds like a half-space, and e^(−2t) is zero.
 const DEEP: f64 = 380.0;
 /// Below this t the hyperbolic functions less the first terms of their series are summed term by term.
@@ -33,24 +29,23 @@ const SHALLOW: f64 = 0.75;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Response {
     /// Bonded to a base, rigid or a half-space.
-    Bonded(Bonded<f64>),
+    Bonded(Bonded),
     /// Sliding without friction on a rigid base.
     Frictionless,
 }
 
-/// The coefficients of N and D of a layer bonded to its base, over (1 + μ)²: complex in a steady motion over a base
-/// that creeps otherwise.
+/// The coefficients of N and D of a layer bonded to its base, over (1 + μ)².
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Bonded<T> {
+pub(super) struct Bonded {
     /// α, β, γ of N and D.
-    sinh: T,
-    cosh: T,
-    linear: T,
+    sinh: f64,
+    cosh: f64,
+    linear: f64,
     /// a², and a (2 + μ (k₂ − 1)).
-    constant: T,
-    square: T,
+    constant: f64,
+    square: f64,
     /// (N − D)/θ = `difference[0]` + `difference[1]` t (1 + t) + `difference[2]` (1 − θ).
-    difference: [T; 3],
+    difference: [f64; 3],
 }
 
 impl Response {
@@ -65,7 +60,7 @@ impl Response {
         }
         let theta = (-2.0 * t).exp();
         match self {
-            Response::Bonded(own) => own.at(t),
+            Response::Bonded(own) => own.at(t, theta),
             Response::Frictionless => {
                 let less = -(-2.0 * t).exp_m1();
                 // over θ; 0/0 at 0
@@ -100,13 +95,12 @@ impl Response {
     }
 }
 
-impl<T: ComplexFloat + Mul<f64, Output = T> + From<f64>> Bonded<T> {
-    pub(super) fn new(poisson: f64, base_poisson: f64, mu: T) -> Bonded<T> {
+impl Bonded {
+    fn new(poisson: f64, base_poisson: f64, mu: f64) -> Bonded {
         let [k1, k2] = [poisson, base_poisson].map(|nu| 3.0 - 4.0 * nu);
         let a = 4.0 * (1.0 - poisson);
         // (1 + μ)², divided by factor by factor so that no product overflows
-        let one = T::one();
-        let (unit, ratio) = (one / (one + mu), mu / (one + mu));
+        let (unit, ratio) = (1.0 / (1.0 + mu), mu / (1.0 + mu));
         let [first1, first2] = [2.0 * (1.0 - 2.0 * poisson), 2.0 * (1.0 - 2.0 * base_poisson)];
         let q = unit + ratio * k2;
         Bonded {
@@ -124,21 +118,17 @@ impl<T: ComplexFloat + Mul<f64, Output = T> + From<f64>> Bonded<T> {
     }
 
     /// L(t).
-    pub(crate) fn at(&self, t: f64) -> T {
-        if t > DEEP {
-            return T::one();
-        }
-        let theta = (-2.0 * t).exp();
+    fn at(&self, t: f64, theta: f64) -> f64 {
         self.numerator(t, theta) / self.denominator(t, theta)
     }
 
     /// θ N.
-    fn numerator(&self, t: f64, theta: f64) -> T {
+    fn numerator(&self, t: f64, theta: f64) -> f64 {
         self.sinh * sinh_less_first(t, theta) + self.cosh * 0.5 * (1.0 + theta * theta) + self.linear * 2.0 * t * theta
     }
 
     /// θ D.
-    fn denominator(&self, t: f64, theta: f64) -> T {
+    fn denominator(&self, t: f64, theta: f64) -> f64 {
         self.sinh * cosh_less_first(t, theta)
             + self.cosh * -0.5 * (-4.0 * t).exp_m1()
             + (self.constant + self.square * (2.0 * t * t)) * theta

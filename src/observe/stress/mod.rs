@@ -44,9 +44,8 @@ const ENDLESS: f64 = 1e60;
 /// this is constant, the stress in a linear viscoelastic half-space equals the stress in an elastic half-space under
 /// the present tractions. These are known on the whole surface: the pressure, and zero outside the contact. Creep and
 /// history act only through the pressure. Where ν changes as the body creeps
-/// ([`Material::elastic_bulk`](crate::rheology::Material::elastic_bulk)), the stress is A p + B r, linear in 1 − 2ν:
-/// A p is the stress at ν = ½, and r = ∫ (1 − 2ν)(t − s) dp(s) depends on the history; see
-/// [`StressHistory`](crate::contact::StressHistory).
+/// ([`Material::elastic_bulk`](crate::rheology::Material::elastic_bulk)), the stress depends on pressures of the past,
+/// too, and is refused.
 ///
 /// **Which bodies.** A half-space loaded on the cells of the grid: closed forms of a rectangle, convolved on a padded
 /// grid. Line contacts: plane strain, σ22 (along the line) = ν (σ11 + σ33). Periodic bodies: closed forms of each
@@ -85,12 +84,12 @@ const ENDLESS: f64 = 1e60;
 pub struct SubsurfaceStress {
     grid: Grid,
     body: HalfSpace,
-    sources: Vec<Source>,
+    source: Source,
     transform: Plane,
     min_depth: f64,
 }
 
-/// A field that acts like a pressure.
+/// The pressure.
 #[derive(Clone)]
 struct Source {
     field: Vec<f64>,
@@ -111,46 +110,11 @@ impl SubsurfaceStress {
     /// transforms.
     pub fn new(kernel: &InfluenceKernel, pressure: &[f64], poisson_ratio: f64) -> Result<SubsurfaceStress> {
         let nu = error::poisson_ratio("Poisson's ratio", poisson_ratio)?;
-        SubsurfaceStress::of(kernel, &[("pressure", pressure, [1.0, 1.0 - 2.0 * nu])])
-    }
-
-    /// The stress in a body whose Poisson's ratio changes as it creeps: `reduced` is r = ∫ (1 − 2ν)(t − s) dp(s)
-    /// \[Pa\], as
-    /// [`StressHistory`](crate::contact::StressHistory) computes it for an elastic bulk.
-    ///
-    /// # Errors
-    /// As [`SubsurfaceStress::new`], and of periodic bodies, whose lateral stress below the mean pressure is not
-    /// linear in 1 − 2ν.
-    pub fn with_changing_poisson(
-        kernel: &InfluenceKernel,
-        pressure: &[f64],
-        reduced: &[f64],
-    ) -> Result<SubsurfaceStress> {
-        SubsurfaceStress::body_of(kernel, true)?;
-        SubsurfaceStress::of(kernel, &[("pressure", pressure, [1.0, 0.0]), ("reduced pressure", reduced, [0.0, 1.0])])
-    }
-
-    /// The half-space whose stress is known, with a constant Poisson's ratio or one that `changes`.
-    pub(crate) fn body_of(kernel: &InfluenceKernel, changes: bool) -> Result<HalfSpace> {
-        let refused = |allowed: &'static str| {
-            let what = format!("the stress below the surface is not known of this body ({kernel})");
-            Refusal::unsupported("kernel_no_stress", what, "").must_be(allowed).into()
-        };
-        match kernel.half_space_below() {
-            None => Err(refused("a half-space, one periodic along both axes, or a line contact of half-spaces")),
-            Some(HalfSpace::Periodic) if changes => Err(refused("of a constant Poisson's ratio where it is periodic")),
-            Some(body) => Ok(body),
-        }
-    }
-
-    fn of(kernel: &InfluenceKernel, fields: &[(&'static str, &[f64], Weights)]) -> Result<SubsurfaceStress> {
+        let body = SubsurfaceStress::body_of(kernel)?;
         let grid = kernel.grid().clone();
-        let body = SubsurfaceStress::body_of(kernel, false)?;
-        for (name, field, _) in fields {
-            exact_length(name, field.len(), grid.len())?;
-            for &value in *field {
-                within(name, value, value.abs() <= GREATEST_PRESSURE, "finite and at most 1e150 Pa in magnitude")?;
-            }
+        exact_length("pressure", pressure.len(), grid.len())?;
+        for &value in pressure {
+            within("pressure", value, value.abs() <= GREATEST_PRESSURE, "finite and at most 1e150 Pa in magnitude")?;
         }
         let periods = [0, 1].map(|axis| match (body, grid.cells()[axis]) {
             (HalfSpace::Periodic, cells) => cells,
@@ -158,26 +122,32 @@ impl SubsurfaceStress {
             (_, cells) => fast_length(2 * cells - 1),
         });
         let padded = periods[0] as u128 * periods[1] as u128;
-        // spectra, three buffers, and the closed forms of each source
-        let per_source = 16 * padded + 56 * grid.len() as u128;
-        memory::check("the stress below the surface", fields.len() as u128 * per_source + 3 * 16 * padded)?;
+        // the spectrum, two buffers, the field and the closed forms
+        memory::check("the stress below the surface", 3 * 16 * padded + 56 * grid.len() as u128)?;
         let transform = Plane::new(periods);
         let mut work = vec![Complex64::default(); transform.len()];
-        let source = |&(_, field, weights): &(_, &[f64], Weights)| {
-            let mut spectrum = vec![Complex64::default(); transform.len()];
-            for (to, from) in spectrum.chunks_exact_mut(periods[1]).zip(field.chunks_exact(grid.cells()[1])) {
-                to.iter_mut().zip(from).for_each(|(to, &value)| *to = Complex64::from(value));
-            }
-            transform.forward(&mut spectrum, &mut work);
-            Source { field: field.to_vec(), spectrum, weights }
-        };
-        let sources = fields.iter().map(source).collect();
+        let mut spectrum = vec![Complex64::default(); transform.len()];
+        for (to, from) in spectrum.chunks_exact_mut(periods[1]).zip(pressure.chunks_exact(grid.cells()[1])) {
+            to.iter_mut().zip(from).for_each(|(to, &value)| *to = Complex64::from(value));
+        }
+        transform.forward(&mut spectrum, &mut work);
+        let source = Source { field: pressure.to_vec(), spectrum, weights: [1.0, 1.0 - 2.0 * nu] };
         // a single cell along an axis resolves nothing there, unless it is the only one
         let sides = grid.spacing();
         let resolved = (0..2).filter(|&axis| grid.cells()[axis] > 1).map(|axis| sides[axis]);
         let longest = resolved.fold(0.0, f64::max);
         let min_depth = 0.5 * if longest > 0.0 { longest } else { sides[0].max(sides[1]) };
-        Ok(SubsurfaceStress { grid, body, sources, transform, min_depth })
+        Ok(SubsurfaceStress { grid, body, source, transform, min_depth })
+    }
+
+    /// The half-space whose stress is known.
+    fn body_of(kernel: &InfluenceKernel) -> Result<HalfSpace> {
+        kernel.half_space_below().ok_or_else(|| {
+            let what = format!("the stress below the surface is not known of this body ({kernel})");
+            Refusal::unsupported("kernel_no_stress", what, "")
+                .must_be("a half-space, one periodic along both axes, or a line contact of half-spaces")
+                .into()
+        })
     }
 
     /// The grid of the pressure.
@@ -263,11 +233,11 @@ impl SubsurfaceStress {
 
     /// The stress at a point in the range that [`SubsurfaceStress::at`] accepts.
     fn at_point(&self, point: [f64; 3]) -> Stress {
-        let below = |source: &Source| match self.body {
-            HalfSpace::Periodic => waves::below_field(&self.grid, &source.spectrum, point, source.weights),
-            _ => rectangle::below_cells(&self.grid, self.sides(point[2]), &source.field, point, source.weights),
-        };
-        self.sources.iter().map(below).fold(Stress::default(), |sum, stress| sum + stress)
+        let Source { field, spectrum, weights } = &self.source;
+        match self.body {
+            HalfSpace::Periodic => waves::below_field(&self.grid, spectrum, point, *weights),
+            _ => rectangle::below_cells(&self.grid, self.sides(point[2]), field, point, *weights),
+        }
     }
 
     /// Sides of a loaded cell \[m\], endless along a line.

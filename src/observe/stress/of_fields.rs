@@ -12,8 +12,7 @@ impl Fields<'_> {
     /// kernel, its pressure and Poisson's ratio.
     ///
     /// # Errors
-    /// If the contact has no material, or Poisson's ratio changes as the body creeps: follow the run with a
-    /// [`StressHistory`](crate::contact::StressHistory).
+    /// If the contact has no material, or Poisson's ratio changes as the body creeps.
     /// As [`SubsurfaceStress::new`].
     pub fn stress(&self) -> Result<SubsurfaceStress> {
         self.stress_of(0)
@@ -31,15 +30,14 @@ impl Fields<'_> {
     fn stress_of(&self, body: usize) -> Result<SubsurfaceStress> {
         self.covers(coverage::STRESS)?;
         let material = self.about.material.ok_or_else(|| missing("material"))?;
-        let law = material.compressibility(body).ok_or_else(|| missing("counter_body"))?;
-        if !law.terms.is_empty() {
+        let Some(nu) = material.poisson_ratios().nth(body).ok_or_else(|| missing("counter_body"))? else {
             let what = format!(
                 "Poisson's ratio of body {body} changes as it creeps (elastic bulk): the stress below its surface \
                  depends on pressures of the past, which the contact does not keep"
             );
-            let remedy = "; follow the run with contact::StressHistory";
+            let remedy = "; give the body a constant Poisson's ratio";
             return Err(Refusal::unsupported("material_changing_poisson", what, remedy).into());
-        }
-        SubsurfaceStress::new(self.kernel(), self.pressure(), 0.5 * (1.0 - law.last))
+        };
+        SubsurfaceStress::new(self.kernel(), self.pressure(), nu)
     }
 }

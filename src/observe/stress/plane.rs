@@ -14,59 +14,47 @@ const SIGNS: [[f64; 6]; 2] = [[1.0, 1.0, 1.0, -1.0, -1.0, 1.0], [1.0, 1.0, 1.0, 
 /// Buffers for planes.
 pub(super) struct Buffers {
     transform: Plane,
-    /// Two components of the sum over the sources, and the term of one source.
-    sum: Vec<Complex64>,
-    term: Vec<Complex64>,
+    /// Two components.
+    pair: Vec<Complex64>,
     work: Vec<Complex64>,
-    /// For each source, the stress below a cell under a unit load, at the distances of the grid.
-    coefficients: Vec<Vec<Stress>>,
+    /// The stress below a cell under a unit load, at the distances of the grid.
+    coefficients: Vec<Stress>,
 }
 
 impl SubsurfaceStress {
     pub(super) fn buffers(&self) -> Buffers {
         let empty = || vec![Complex64::default(); self.transform.len()];
-        let tables = self.sources.iter().map(|_| match self.body {
+        let coefficients = match self.body {
             HalfSpace::Periodic => Vec::new(),
             _ => vec![Stress::default(); self.grid.len()],
-        });
-        Buffers {
-            transform: self.transform.clone(),
-            sum: empty(),
-            term: empty(),
-            work: empty(),
-            coefficients: tables.collect(),
-        }
+        };
+        Buffers { transform: self.transform.clone(), pair: empty(), work: empty(), coefficients }
     }
 }
 
 impl Buffers {
     /// Writes the stress at a depth below each cell.
     pub(super) fn fill_plane(&mut self, stress: &SubsurfaceStress, depth: f64, plane: &mut [Stress]) {
-        let SubsurfaceStress { grid, body, sources, .. } = stress;
-        for (source, table) in sources.iter().zip(&mut self.coefficients) {
-            if *body != HalfSpace::Periodic {
-                tabulate_rectangle(grid, stress.sides(depth).map(|side| side / depth), source.weights, table);
-            }
+        let SubsurfaceStress { grid, body, source, .. } = stress;
+        if *body != HalfSpace::Periodic {
+            let sides = stress.sides(depth).map(|side| side / depth);
+            tabulate_rectangle(grid, sides, source.weights, &mut self.coefficients);
         }
         let (n2, p2) = (grid.cells()[1], self.transform.periods()[1]);
         for pair in 0..3 {
-            self.sum.fill(Complex64::default());
-            for (source, table) in sources.iter().zip(&self.coefficients) {
-                if *body == HalfSpace::Periodic {
-                    add_waves(grid, depth, source, pair, &mut self.sum);
-                } else {
-                    write_mirrored(grid, self.transform.periods(), table, pair, &mut self.term);
-                    self.transform.forward(&mut self.term, &mut self.work);
-                    for_each_line_share(&mut self.sum, p2, &|first, sums| {
-                        let terms = self.term[first * p2..].iter().zip(&source.spectrum[first * p2..]);
-                        sums.iter_mut().zip(terms).for_each(|(sum, (a, b))| *sum += a * b);
-                    });
-                }
+            if *body == HalfSpace::Periodic {
+                write_waves(grid, depth, source, pair, &mut self.pair);
+            } else {
+                write_mirrored(grid, self.transform.periods(), &self.coefficients, pair, &mut self.pair);
+                self.transform.forward(&mut self.pair, &mut self.work);
+                for_each_line_share(&mut self.pair, p2, &|first, values| {
+                    values.iter_mut().zip(&source.spectrum[first * p2..]).for_each(|(value, of)| *value *= of);
+                });
             }
-            self.transform.inverse(&mut self.sum, &mut self.work);
+            self.transform.inverse(&mut self.pair, &mut self.work);
             let norm = 1.0 / self.transform.len() as f64;
             for_each_line_share(plane, n2, &|first, stresses| {
-                let rows = self.sum[first * p2..].chunks_exact(p2);
+                let rows = self.pair[first * p2..].chunks_exact(p2);
                 for (row, stresses) in rows.zip(stresses.chunks_exact_mut(n2)) {
                     row.iter().zip(stresses).for_each(|(value, stress)| set_pair(stress, pair, norm * value));
                 }
@@ -129,15 +117,15 @@ fn tabulate_rectangle(grid: &Grid, sides: [f64; 2], weights: Weights, table: &mu
     });
 }
 
-/// Adds a pair of components below the waves of a source.
-fn add_waves(grid: &Grid, depth: f64, source: &Source, pair: usize, sum: &mut [Complex64]) {
+/// Writes a pair of components below the waves of the pressure.
+fn write_waves(grid: &Grid, depth: f64, source: &Source, pair: usize, out: &mut [Complex64]) {
     let ([n1, n2], [d1, d2]) = (grid.cells(), grid.spacing());
-    for_each_line_share(sum, n2, &|begin, rows| {
+    for_each_line_share(out, n2, &|begin, rows| {
         for (k1, row) in (begin..).zip(rows.chunks_exact_mut(n2)) {
             let first = Wave::new(k1, n1, d1);
-            for (k2, sum) in row.iter_mut().enumerate() {
+            for (k2, out) in row.iter_mut().enumerate() {
                 let factors = pairs_below_wave([first, Wave::new(k2, n2, d2)], depth, source.weights);
-                *sum += factors[pair] * source.spectrum[k1 * n2 + k2];
+                *out = factors[pair] * source.spectrum[k1 * n2 + k2];
             }
         }
     });

@@ -280,12 +280,6 @@ const SCENES: &[Scene] = &[
 ("a load beyond a sweep of states", || StatesContact::new(&states()?, &zener())?.step(0.0, Load::approach(50.0e-6)).map(told), "sweep further"),
 // steady motions and attraction
 ("a shape that jumps at its period", sliding_over_steps, "jumps once in the period"),
-("a thin layer on a base of its own", || {
-    let (rubber, steel) = (Material::incompressible(rubber()), Material::constant_poisson(Elastic::young(210.0e9, 0.3)?, 0.3)?);
-    let grid = Grid::square(24, 4.0e-3)?;
-    let kernel = InfluenceKernel::layer(&grid, Layer::bonded_to_material(20.0e-6, &rubber, &steel)?)?;
-    builder_on(grid, rubber).kernel(kernel).build_sliding_on(steel).map(|_| String::new())
-}, "shorten the grid"),
 ("a line load whose datum is near", || {
     let grid = Grid::new([64, 1], [4.0e-3, 1.0])?;
     let kernel = InfluenceKernel::line(&grid, 5.0e-3)?;
