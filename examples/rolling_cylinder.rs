@@ -6,7 +6,7 @@
 //! (`examples/support/scenes/rolling.rs`). The curve is the closed form of S. C. Hunter (J. Appl. Mech. 28, 1961); on it are the steady states
 //! as one contact problem each, too.
 //!
-//! `cargo run --release -p viscocontact --features analytic,plot,sliding --example rolling_cylinder`
+//! `cargo run --release -p viscocontact --features analytic,data,plot,sliding --example rolling_cylinder`
 
 #[path = "support/scenes/march.rs"]
 mod march;

@@ -6,7 +6,7 @@
 //! SIAM 2005, section 3.2; doi:10.1137/1.9780898717921). A curve says nothing of angles and little of details: wear is taken for the
 //! same all around, a sum of bumps c over the radius that are likely as deep as the wear; N says how accurate the curve is.
 //!
-//! `cargo run --release -p viscocontact --features plot,states --example worn_tip`
+//! `cargo run --release -p viscocontact --features data,plot,states --example worn_tip`
 
 mod support;
 

@@ -2,7 +2,7 @@
 //!
 //! Series of a creep function need no more of dense algebra than this page, while a library for it
 //! takes most of a first build. `faer` is the reference of the tests, and solves the larger
-//! problems of `data` and `sliding`.
+//! problems of `data`.
 
 use std::ops::{Index, IndexMut};
 

@@ -117,7 +117,7 @@ fn with_causes(error: &dyn StdError) -> String {
 }
 
 /// What messages of the crates name, and what it is called here.
-const NAMES: [(&str, &str); 39] = [
+const NAMES: [(&str, &str); 38] = [
     ("share of the glassy modulus", "share of the glassy modulus (moduli are for Rheology.generalized_maxwell)"),
     (
         "name the times to fit one over, with Builder::times (first and last) or Builder::times_of (a load history and its end), or fit one with Rheology::series or Material::fitted",
@@ -147,7 +147,6 @@ const NAMES: [(&str, &str); 39] = [
     ),
     ("a contact needs counter_body: call Builder::counter_body before build", "the contact has no counter_body="),
     ("from ViscoelasticContact::traction_into", "of the traction"),
-    ("Material::incompressible or Material::constant_poisson", "Material(rheology, nu)"),
     (
         "use Measurements::fit_tension and Material::from_tension",
         "use Measurements.fit_tension, and give the Material its nu",

@@ -117,7 +117,6 @@ impl SteadySliding {
         signature = (grid, geometry, material, *, modulus=None, counter_motion=None, **options),
         text_signature = "(grid, geometry, material, *, modulus=None, counter_motion=None, **options)"
     )]
-    #[allow(clippy::too_many_arguments)]
     fn new(
         py: Python<'_>,
         grid: Bound<'_, Grid>,

@@ -176,3 +176,20 @@ fn widths(lengths: [f64; 2], needed: Option<[f64; 2]>) -> String {
     let grid = format!("the grid is {}", area(lengths, 3));
     needed.map_or(grid.clone(), |needed| format!("{grid}, the load needs about {}", area(needed, 1)))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Steps far from a solution are to be shorter, those at rounding are not to be solved more exactly.
+    #[test]
+    fn what_a_solve_needs_follows_from_its_end() {
+        let text = |residual: f64, stagnated: bool| {
+            let tolerance = 1e-9;
+            StepError::NotConverged { time: 1.0, dt: 0.5, iterations: 40, residual, tolerance, stagnated }.to_string()
+        };
+        assert!(text(2e-2, true).contains("smaller steps"));
+        assert!(text(3e-8, true).contains("raise Settings::tolerance"));
+        assert!(text(3e-8, false).contains("raise Settings::max_iterations"));
+    }
+}

@@ -169,7 +169,7 @@ impl InfluenceKernel {
                 layout.workspace_bytes(None) + 3 * coefficients,
             )?;
             if !is_positive(whole, grid.len()) {
-                let what = "the influence coefficients are not positive definite: some pressure has a negative energy";
+                let what = "the influence coefficients are not positive definite: some pressure has no positive energy";
                 let remedy = "; check their signs, and that near cells influence each other more than distant ones";
                 return Err(Refusal::value("kernel_not_positive_definite", what, remedy)
                     .naming("influence coefficients")

@@ -346,7 +346,7 @@ impl Bulk {
     /// 1 − 2ν = 3G/H is (3 − 9b/H)/(1 + 3c) with B = b + c G.
     fn poisson(&self, stiffened: &CreepSpectrum) -> Option<f64> {
         let scale = 1.0 / (1.0 + 3.0 * self.per_shear);
-        // of a body that flows, or is much stiffer in bulk, the difference is rounding of either sign
+        // of a body that is much stiffer in bulk, the difference is rounding of either sign
         let compressibility = (3.0 * scale - 9.0 * self.constant * scale * stiffened.glassy()).max(0.0);
         stiffened.terms().is_empty().then_some(0.5 * (1.0 - compressibility))
     }

@@ -75,7 +75,7 @@ impl SteadySliding {
     ///
     /// # Errors
     /// As [`SteadySliding::at`], [`TimeTemperature::shift_factor`] and [`TimeTemperature::vertical_factor`]; if the
-    /// law has vertical factors and the contact a second body, a base or a bulk, which does not follow it.
+    /// law has vertical factors and the contact a second body or a bulk, which does not follow it.
     pub fn sweep(&mut self, sweep: &SlidingSweep) -> Result<SlidingTable> {
         self.sweep_with(sweep, |_, _| ControlFlow::Continue(()))
     }

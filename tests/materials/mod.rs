@@ -7,7 +7,7 @@ mod one_bad_row;
 mod refusals;
 mod repeats;
 mod sparse_tables;
-mod spectra;
+pub mod spectra;
 mod superposed;
 mod tension;
 mod vertical;

@@ -16,7 +16,7 @@ fn carson_defect(creep: &CreepSpectrum, relaxation: &RelaxationSpectrum, s: f64)
     carson(creep, s) * g - 1.0
 }
 
-fn assert_reciprocal(creep: &CreepSpectrum) {
+pub fn assert_reciprocal(creep: &CreepSpectrum) {
     let relaxation = creep.relaxation();
     let back = relaxation.creep();
     for exponent in -80..=80 {

@@ -1,6 +1,7 @@
 //! Every rheology, geometry and load history of the crate, and random ones, against their laws.
 
 use crate::common::spectra::spectra;
+use crate::materials::spectra::assert_reciprocal;
 use approx::assert_abs_diff_eq;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -47,7 +48,7 @@ fn obeys(name: &str, verdict: laws::Verdict) {
     verdict.unwrap_or_else(|violation| panic!("{name}: {violation}"));
 }
 
-/// Every model, and what a contact runs on: its series over ten decades, with its error and its laws, J ∗ G = t among them.
+/// Every model, and what a contact runs on: its series over ten decades, with its error, its laws and its relaxation.
 #[test]
 fn every_model_and_its_series_obey_every_law() {
     let times = laws::log_times(1e-5, 1e5);
@@ -64,6 +65,7 @@ fn every_model_and_its_series_obey_every_law() {
             assert_eq!(series.creep_compliance(0.0), model.creep_compliance(0.0), "{name}: elastic response");
         }
         obeys(&format!("series of {name}"), laws::all(&series, &times));
+        assert_reciprocal(series.spectrum());
     }
 }
 

@@ -368,7 +368,8 @@ fn errors(inside: &Inside, tolerance: f64) -> Result<Errors, Box<dyn std::error:
 }
 
 /// States within the steps of adaptive runs err by at most twice what was asked for, in all but one of a hundred runs, and by at most
-/// twice what the budget states in all. Greatest pressures and areas are as exact as at the ends of steps.
+/// twice what the budget states in all. Maximum pressures are as accurate as at the ends of steps; areas are printed alone: a cell is met too early or
+/// too late at few of the moments looked at.
 ///
 /// A body without elastic response answers each cell that it meets with a finite pressure at once, and the step control passes
 /// over events shorter than its resolution: of such bodies the approach is compared alone.

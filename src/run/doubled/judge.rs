@@ -152,6 +152,13 @@ impl<J> Record<J> {
             && self.bends_along.is_sorted()
     }
 
+    /// Forces along the surface below these are lost in the rounding of the forces of the run. A normal load that is lost
+    /// carries none, and friction can carry about as much as presses.
+    pub(in crate::run) fn least_along(&self) -> [f64; 3] {
+        let most = if self.by_force { self.greatest_load } else { 0.0 };
+        self.greatest_along.map(|greatest| if greatest > 0.0 { f64::EPSILON * greatest.max(most) } else { 0.0 })
+    }
+
     /// Looks at the load of the run, which fails where there is none. A load that the contact has no size for fails
     /// the step to it.
     pub(in crate::run) fn look<C: Contact>(&mut self, contact: &C, history: &dyn LoadHistory) -> Result<()>

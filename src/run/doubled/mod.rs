@@ -70,7 +70,7 @@ impl<C: Contact, J: Judge<C>> Doubled<C, J> {
             self.record.look(contact, history)?;
             self.passage.reserve(self.record.bends.as_ref().map_or(0, Vec::len).max(self.record.bends_along.len()));
         }
-        contact.neglect(self.record.greatest_along.map(|greatest| f64::EPSILON * greatest));
+        contact.neglect(self.record.least_along());
         let rounded = self.rounded(contact, history);
         match course.given {
             Some((time, &[load, ..])) => contact.step_to(time, rounded.round(load)),
@@ -275,6 +275,8 @@ impl<C: Contact, J: Judge<C>> Control<C> for Doubled<C, J> {
 
     fn advance(&mut self, contact: &mut C, course: &Course<'_>) -> Result<StepReport> {
         unless_cancelled(course.cancelled)?;
+        // of a run from a file, too
+        contact.neglect(self.record.least_along());
         J::copy(&mut self.before, contact);
         let report = self.take_step(contact, course).inspect_err(|_| J::copy(contact, &self.before))?;
         self.halved = course.given.is_none();
