@@ -313,7 +313,8 @@ fn too_much_shear_ends_a_run_before_it() {
 fn loads_go_through_nothing_together() {
     let material = || Material::incompressible(Zener::with_time(1.0e6, 1.0e6, 1.0).unwrap());
     // friction can carry all of them: a shear of the course of the load, and one whose load grows or falls from touch to touch
-    let scenes: [[fn(f64) -> f64; 2]; 5] = [
+    type OfTime = fn(f64) -> f64;
+    let scenes: [[OfTime; 2]; 5] = [
         [|t| (PI * t).sin().powi(2), |t| 0.3 * (PI * t).sin().powi(2)],
         [|t| (1.0 - 1.0 / t).exp(), |t| 0.3 * (1.0 - 1.0 / t).exp()],
         [|t| (3.0 * t).sin().abs().powi(5), |t| 0.3 * (3.0 * t).sin().abs().powi(5)],
