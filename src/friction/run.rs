@@ -40,6 +40,7 @@ impl FrictionContact {
     ///
     /// Adaptive steps keep the error of motions and forces along the surface, relative to their maximum so far, of the
     /// work and of the loss by slip within the tolerance besides that of approach and force, and solve to 1e-4 of it.
+    /// Forces along the surface below 2e-16 of the maximum of a run are none, as normal loads are.
     /// Work and loss count as at least a tenth of the largest motion times the largest force. More than friction carries
     /// ends the run with [`Error::Slides`]; [`FrictionContact::load_share`] tells before.
     ///

@@ -133,8 +133,8 @@ impl StatesContact {
 
     /// With what acts along the surface in all further steps: forces Q \[N\] as [`Load::force`], of either sign,
     /// displacements d \[m\] as [`Load::approach`], springs as [`Load::spring`]. Runs end their steps at its corners
-    /// and follow its jumps as those of the normal load, if both jump at once by oblique loading. Without it no force
-    /// acts along the surface.
+    /// and follow its jumps as those of the normal load, if both jump at once by oblique loading. Forces below 2e-16 of
+    /// the maximum of a run are none, as normal loads are. Without it no force acts along the surface.
     ///
     /// # Errors
     /// If the contact has no friction.
