@@ -32,10 +32,11 @@ impl ShearHistory {
         self
     }
 
-    pub(super) fn load(&self, of: impl Fn(&dyn LoadHistory) -> Result<Load>) -> Result<ShearLoad> {
+    /// What acts, without forces and a torque that are less than the `least`.
+    pub(super) fn load(&self, least: [f64; 3], of: impl Fn(&dyn LoadHistory) -> Result<Load>) -> Result<ShearLoad> {
         let mut load = ShearLoad::force([0.0; 2]);
-        for (component, history) in load.components.iter_mut().zip(&self.components) {
-            *component = match of(&**history).map_err(Error::along)? {
+        for ((component, history), least) in load.components.iter_mut().zip(&self.components).zip(least) {
+            *component = match of(&**history).map_err(Error::along)?.without_force_below(least) {
                 Load::Force { normal: force, tilt: UPRIGHT } => Component::Force(force),
                 Load::Approach { approach: motion, tilt: UPRIGHT } => Component::Motion(motion),
                 other => {

@@ -57,17 +57,6 @@ impl ShearLoad {
         self
     }
 
-    /// Without forces and a torque that are less than these.
-    pub(super) fn without_less_than(mut self, least: [f64; 3]) -> ShearLoad {
-        for (component, least) in self.components.iter_mut().zip(least) {
-            match component {
-                Component::Force(force) if force.abs() < least => *force = 0.0,
-                _ => {}
-            }
-        }
-        self
-    }
-
     pub(super) fn validate(&self) -> Result<()> {
         for (component, [force, motion]) in self.components.iter().zip([
             ["force along x1", "displacement along x1"],

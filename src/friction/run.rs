@@ -71,12 +71,11 @@ impl FrictionContact {
 
     /// What acts along the surface at the end of a step of length `dt` to a `time`: at a jump of no time, else before it.
     fn sheared_at(&self, time: f64, dt: f64) -> Result<ShearLoad> {
-        let load = match &self.history_along {
+        match &self.history_along {
             None => Ok(ShearLoad::force([0.0; 2])),
-            Some(history) if dt > 0.0 => history.load(|history| history.checked_before(time, true)),
-            Some(history) => history.load(|history| history.checked_at(time, true)),
-        };
-        load.map(|load| load.without_less_than(self.least))
+            Some(history) if dt > 0.0 => history.load(self.least, |history| history.checked_before(time, true)),
+            Some(history) => history.load(self.least, |history| history.checked_at(time, true)),
+        }
     }
 
     /// About the most that a contact that sticks resists a motion along the surface \[N/m\]: as a circle about all cells

@@ -1,4 +1,6 @@
-//! Work along the surface.
+//! Loads and work along the surface.
+
+use super::Load;
 
 /// Where the work along the surface went, since the contact was made \[J\]: work = slip + stored + creep.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -19,5 +21,17 @@ impl LateralWork {
     /// By what the bodies hold of the work now.
     pub(crate) fn new(work: f64, slip: f64, stored: f64) -> LateralWork {
         LateralWork { work, slip, stored, creep: work - slip - stored }
+    }
+}
+
+impl Load {
+    /// The load along the surface, without a force that is less than this.
+    pub(crate) fn without_force_below(mut self, least: f64) -> Load {
+        if let Load::Force { normal: force, .. } = &mut self
+            && force.abs() < least
+        {
+            *force = 0.0;
+        }
+        self
     }
 }

@@ -215,7 +215,7 @@ impl Judge<StatesContact> for OnLevels {
                 .map(|scale| 0.5 * scale);
             let asked = |time: f64| contact.along(time, time - now, None).ok().flatten();
             let stuck = halves.levels.stuck_again(&halves.states, [&contact.levels, &middle.levels], span, asked);
-            see([off[0].max(off[1]), off[2] + stuck / AIMS.of_halves], scales);
+            see([off[0], off[2] + stuck / AIMS.of_halves], scales);
             // where bodies part, the halves agree although both pass over the slip: all that the last part loses is in
             // doubt
             let held = if middle.level() > 0.0 { &middle.levels } else { &contact.levels };

@@ -184,13 +184,8 @@ impl StatesContact {
             (None, Some(history)) if dt > 0.0 => history.checked_before(time, true),
             (None, Some(history)) => history.checked_at(time, true),
         };
-        let mut load = load.map_err(Error::along)?;
-        if let (Load::Force { normal: force, .. }, None, Some(shear)) = (&mut load, given, &self.levels.shear)
-            && force.abs() < shear.least
-        {
-            *force = 0.0;
-        }
-        friction.demand(load).map(Some)
+        let least = self.levels.shear.as_ref().filter(|_| given.is_none()).map_or(0.0, |shear| shear.least);
+        friction.demand(load.map_err(Error::along)?.without_force_below(least)).map(Some)
     }
 
     /// What the levels have along the surface, if there is friction.

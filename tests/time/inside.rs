@@ -329,7 +329,7 @@ impl Inside {
     }
 }
 
-/// Greatest error of each quantity, relative to the greatest of the run, in tolerances.
+/// Maximum error of each quantity, relative to the maximum of the run, in tolerances.
 struct Errors {
     within: [f64; 5],
     ends: [f64; 5],

@@ -65,13 +65,7 @@ impl<C: Contact, J: Judge<C>> Doubled<C, J> {
     }
 
     fn take_step(&mut self, contact: &mut C, course: &Course<'_>) -> Result<StepReport> {
-        let history = course.histories.first();
-        if self.record.tolerance > 0.0 && self.record.bends.is_none() {
-            self.record.look(contact, history)?;
-            self.passage.reserve(self.record.bends.as_ref().map_or(0, Vec::len).max(self.record.bends_along.len()));
-        }
-        contact.neglect(self.record.least_along());
-        let rounded = self.rounded(contact, history);
+        let rounded = self.rounded(contact, course.histories.first());
         match course.given {
             Some((time, &[load, ..])) => contact.step_to(time, rounded.round(load)),
             _ => self.step(contact, &rounded, course),
@@ -275,7 +269,10 @@ impl<C: Contact, J: Judge<C>> Control<C> for Doubled<C, J> {
 
     fn advance(&mut self, contact: &mut C, course: &Course<'_>) -> Result<StepReport> {
         unless_cancelled(course.cancelled)?;
-        // of a run from a file, too
+        if self.record.tolerance > 0.0 && self.record.bends.is_none() {
+            self.record.look(contact, course.histories.first())?;
+            self.passage.reserve(self.record.bends.as_ref().map_or(0, Vec::len).max(self.record.bends_along.len()));
+        }
         contact.neglect(self.record.least_along());
         J::copy(&mut self.before, contact);
         let report = self.take_step(contact, course).inspect_err(|_| J::copy(contact, &self.before))?;

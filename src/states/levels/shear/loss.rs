@@ -99,7 +99,7 @@ impl Levels {
 
     /// How far apart two outcomes of one step are along the surface: ∫ |δU| dδ, the most that their displacements can
     /// ever differ by; the displacements; the forces; what slip has dissipated; and the work. In the first, levels that
-    /// began to slip after the state `before`, or that the edge passed, count as `swept`.
+    /// began to slip after the state `before`, or that the edge passed, count as `swept`; it is no less than the second.
     pub(in crate::states) fn shear_distance(&self, other: &Levels, before: &Levels, swept: f64) -> Option<[f64; 5]> {
         let (one, two, from) = (self.shear.as_ref()?, other.shear.as_ref()?, before.shear.as_ref()?);
         let (own, others) = (self.history.sheared()?, other.history.sheared()?);
@@ -127,7 +127,7 @@ impl Levels {
         let numbers = |shear: &Shear| [shear.displacement(), shear.force, shear.lost, shear.work];
         let (own, others) = (numbers(one), numbers(two));
         let [motion, force, lost, work] = std::array::from_fn(|k| (own[k] - others[k]).abs());
-        Some([far + (one.slid - two.slid).abs(), motion, force, lost, work])
+        Some([motion.max(far + (one.slid - two.slid).abs()), motion, force, lost, work])
     }
 
     /// By how much force a contact that slides in both halves of a step, `others` being the states before it and
