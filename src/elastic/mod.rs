@@ -8,14 +8,13 @@
 //! compliance, and a surface that the past has displaced ([`ElasticContact::set_surface`]).
 
 mod builder;
-mod report;
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 pub use builder::ElasticBuilder;
-pub use report::ElasticReport;
 
+use crate::contact::StepReport;
 use crate::equilibrium::constraints::{acceptable, below_full_contact, converged, find_free_motions, validate_loads};
 use crate::equilibrium::guess::initial_guess;
 use crate::equilibrium::indenter::even_axes;
@@ -31,7 +30,7 @@ use crate::fields::{About, Fields, Surface, View};
 use crate::geometry::Missed;
 use crate::load::Load;
 use crate::parallel::in_pool;
-use crate::solver::{Solution, Stop};
+use crate::solver::Stop;
 use crate::{Grid, memory};
 
 /// Rigid bodies pressed onto an elastic body: pressure, contact area and motions under a load.
@@ -138,7 +137,7 @@ impl ElasticContact {
     /// edge of the grid (unless [`Edge::Allow`](crate::contact::Edge::Allow)), an approach closes every gap of
     /// periodic bodies, a layer on a rigid base is pressed through, the solver does not converge, there is no memory
     /// for the cells that the contact reaches, or there is not one load for each body.
-    pub fn solve(&mut self, loads: impl AsRef<[Load]>) -> Result<ElasticReport> {
+    pub fn solve(&mut self, loads: impl AsRef<[Load]>) -> Result<StepReport> {
         self.solve_to(self.ground.settings.tolerance, None, loads.as_ref())
     }
 
@@ -146,11 +145,11 @@ impl ElasticContact {
     ///
     /// # Errors
     /// As [`ElasticContact::solve`], and [`Error::Cancelled`](crate::Error::Cancelled).
-    pub fn solve_unless(&mut self, cancelled: &AtomicBool, loads: impl AsRef<[Load]>) -> Result<ElasticReport> {
+    pub fn solve_unless(&mut self, cancelled: &AtomicBool, loads: impl AsRef<[Load]>) -> Result<StepReport> {
         self.solve_to(self.ground.settings.tolerance, Some(cancelled), loads.as_ref())
     }
 
-    fn solve_to(&mut self, tolerance: f64, cancelled: Option<&AtomicBool>, loads: &[Load]) -> Result<ElasticReport> {
+    fn solve_to(&mut self, tolerance: f64, cancelled: Option<&AtomicBool>, loads: &[Load]) -> Result<StepReport> {
         let indenter = &Arc::clone(&self.own.held.indenter);
         let request = Request { time: 0.0, length: 0.0, loads, indenter, tolerance, cancelled };
         let (ground, c, mut larger) = (&*self.ground, self.compliance, None);
@@ -164,24 +163,13 @@ impl ElasticContact {
         Ok(self.report(&pressed))
     }
 
-    fn report(&self, pressed: &Pressed) -> ElasticReport {
+    /// The report of a jump at time 0.
+    fn report(&self, pressed: &Pressed) -> StepReport {
         let (ground, Solver { held, .. }) = (&self.ground, &self.own);
         let modulus = modulus_of_no_solid(self.compliance);
         let figures = Figures { modulus, ..held.figures(ground, self.missed, pressed) };
-        let (fields, Solution { counts, residual, .. }) = (self.fields(), &held.current.solution);
-        ElasticReport {
-            force: fields.force(),
-            approach: fields.approach(),
-            tilt: fields.tilt(),
-            contact_cells: fields.contact_cells(),
-            warnings: held.warnings(ground, pressed.reach, &figures),
-            figures,
-            iterations: counts.iterations,
-            fallback_iterations: counts.fallback_iterations,
-            convolutions: counts.convolutions,
-            preconditioner_applications: counts.preconditioner_applications,
-            residual: *residual,
-        }
+        let warnings = held.warnings(ground, pressed.reach, &figures);
+        StepReport { warnings, figures, ..StepReport::solved(self.fields()) }
     }
 
     /// The displacement \[m\] that the surface has before any pressure, positive into the bodies, one value per cell:

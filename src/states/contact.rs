@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::elastic::other_tilt;
-use crate::contact::{Estimated, Figures, Limits, StepReport, Warnings};
+use crate::contact::{Figures, Limits, StepReport, Warnings};
 use crate::elastic::ElasticContact;
 use crate::error::{Result, non_negative};
 use crate::hereditary::{ExponentialRule, Interpolant};
@@ -244,21 +244,10 @@ impl StatesContact {
         }
         warnings.set(Warnings::MODULUS, limits.modulus.is_some());
         StepReport {
-            time: self.time,
-            force: self.force(),
-            approach: self.approach(),
             contact_cells: self.states.state_at(self.level()).map_or(0, |state| state.cells),
-            tilt: self.tilt(),
-            dt,
-            time_error: (dt == 0.0).then_some(0.0),
-            estimated: Estimated::under(&[load]),
             warnings,
             figures: Figures { modulus: limits.modulus, ..figures },
-            iterations: 0,
-            fallback_iterations: 0,
-            convolutions: 0,
-            preconditioner_applications: 0,
-            residual: 0.0,
+            ..crate::run::without_work(self, dt, load)
         }
     }
 

@@ -3,10 +3,13 @@
 use std::fmt;
 
 use crate::equilibrium::{Figures, Warnings};
+use crate::fields::Fields;
 use crate::load::Load;
 use crate::rounded::{TIME, rounded};
+use crate::solver::Solution;
 
-/// The outcome and the cost of one step.
+/// The outcome and the cost of one step; of an [`ElasticContact`](crate::elastic::ElasticContact), which has no time, as
+/// of a jump at time 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -87,6 +90,28 @@ impl fmt::Display for Estimated {
 }
 
 impl StepReport {
+    /// Of a jump at time 0 to what these fields hold, without warnings.
+    pub(crate) fn solved(fields: Fields<'_>) -> StepReport {
+        let Solution { counts, residual, .. } = &fields.held.current.solution;
+        StepReport {
+            time: 0.0,
+            force: fields.force(),
+            approach: fields.approach(),
+            contact_cells: fields.contact_cells(),
+            tilt: fields.tilt(),
+            dt: 0.0,
+            time_error: Some(0.0),
+            estimated: Estimated::under(&fields.held.loads),
+            warnings: Warnings::default(),
+            figures: Figures::default(),
+            iterations: counts.iterations,
+            fallback_iterations: counts.fallback_iterations,
+            convolutions: counts.convolutions,
+            preconditioner_applications: counts.preconditioner_applications,
+            residual: *residual,
+        }
+    }
+
     /// The transforms of the step in units of one convolution; a transform without padding counts a quarter.
     pub fn convolution_equivalents(&self) -> f64 {
         self.convolutions as f64 + 0.25 * self.preconditioner_applications as f64

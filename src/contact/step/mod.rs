@@ -31,20 +31,20 @@ mod retraction;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::contact::{Clock, Computation, Estimated, Scene, State, Step, StepReport, ViscoelasticContact};
+use crate::contact::{Clock, Computation, Scene, State, Step, StepReport, ViscoelasticContact};
 use crate::equilibrium::constraints::{acceptable, below_full_contact, converged, find_free_motions, validate_loads};
 use crate::equilibrium::guess::initial_guess;
 use crate::equilibrium::pressed::Pressed;
 use crate::equilibrium::spring::{guess_forces, solve_with_springs};
 use crate::equilibrium::window::growth::{OnRegion, solve_on_growing_region};
 use crate::equilibrium::window::placement::{outgrown, region_for};
-use crate::equilibrium::{Equilibrium, Figures, Held, Region, RigidBodies, Trial};
+use crate::equilibrium::{Figures, Held, Region, RigidBodies, Trial};
 use crate::error::{Error, Result, StepError, non_negative, or_failure_of};
 use crate::events;
 use crate::hereditary::{Interpolant, Interval, StepContext, TimeError};
 use crate::load::Load;
 use crate::parallel::in_pool;
-use crate::solver::{Solution, Stop};
+use crate::solver::Stop;
 use accept::collect_warnings;
 use attraction::{AttractedStep, coarse_zone};
 use error_in_time::error_in_time;
@@ -203,7 +203,6 @@ impl ViscoelasticContact {
     /// The report of the last step, and where it presses.
     pub(crate) fn report(&self, time_error: Option<f64>, pressed: Pressed) -> StepReport {
         let (scene, state) = (&self.scene, &self.computation.state);
-        let Equilibrium { contact_cells, solution: Solution { counts, residual, .. }, .. } = state.held.current;
         let clock: &Clock = &state.clock;
         let compliance = || scene.material.contact_compliance(clock.age().max(clock.last_dt));
         let figures = Figures {
@@ -213,21 +212,12 @@ impl ViscoelasticContact {
             ..state.held.figures(&scene.ground, self.missed, &pressed)
         };
         StepReport {
-            time: state.clock.time,
-            force: self.force(),
-            approach: self.approach(),
-            contact_cells,
-            tilt: self.tilt(),
-            dt: state.clock.last_length,
+            time: clock.time,
+            dt: clock.last_length,
             time_error,
-            estimated: Estimated::under(&state.held.loads),
             warnings: collect_warnings(scene, &self.computation, pressed.reach, &figures, time_error),
             figures,
-            iterations: counts.iterations,
-            fallback_iterations: counts.fallback_iterations,
-            convolutions: counts.convolutions,
-            preconditioner_applications: counts.preconditioner_applications,
-            residual,
+            ..StepReport::solved(self.fields())
         }
     }
 
