@@ -87,7 +87,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     for (map, name) in maps.iter().zip(["measured.png", "prepared.png"]) {
         map.save(args.output.join(name))?;
     }
-    Map::save_row(&maps, args.output.join("surface.png"))?;
+    Map::draw_row(&maps)?.save(args.output.join("surface.png"))?;
     press(args, &prepared)?;
     println!("tables and pictures are in {}", args.output.display());
     Ok(())
@@ -197,7 +197,7 @@ fn press(args: &Args, roughness: &HeightMap) -> Result<(), Box<dyn Error>> {
             chart.add(format!("{} s, rough", report.time), COLORS[color], Style::Line, points);
             let points = line.positions.iter().map(|&x| (x * 1e3, smooth.pressure(x.abs()) * 1e-3)).collect();
             chart.add(format!("{} s, smooth ball (Hertz)", report.time), COLORS[5 - color], Style::Line, points);
-            maps.push(Map::pressure(contact)?);
+            maps.push(Map::of(contact, Field::Pressure)?);
         }
     }
     progress.finish_and_clear();
@@ -206,7 +206,7 @@ fn press(args: &Args, roughness: &HeightMap) -> Result<(), Box<dyn Error>> {
     // one scale for all, on which the later pressures, which are smaller, are seen as well
     let most = 0.5 * maps.iter().map(|map| map.range[1]).fold(0.0, f64::max);
     maps.iter_mut().for_each(|map| map.range = [0.0, most]);
-    Ok(Map::save_row(&maps, args.output.join("pressure.png"))?)
+    Ok(Map::draw_row(&maps)?.save(args.output.join("pressure.png"))?)
 }
 
 /// A map of heights as a picture, from the lowest to the highest.
@@ -214,7 +214,7 @@ fn picture(map: &HeightMap, title: &str) -> Result<Map> {
     let grid = Grid::new(map.cells(), map.lengths())?;
     let mut picture = Map::new(&grid, map.heights().to_vec(), Quantity::new("height", "m"))?;
     picture.title = title.into();
-    picture.blank = Color::GREY;
+    picture.blank = Color(190, 190, 190);
     Ok(picture)
 }
 

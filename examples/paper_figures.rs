@@ -22,7 +22,7 @@ use scenes::{
 use step_loaded_sphere::StepLoadedSphere;
 use viscocontact::Result;
 use viscocontact::analytic::{GrowingSphere, Hertz};
-use viscocontact::plot::{COLORS, Chart, Color, Legend, Picture, Style};
+use viscocontact::plot::{COLORS, Chart, Legend, Picture, Style};
 use viscocontact::prelude::*;
 
 /// Draws Figures 2 to 6 of the source paper.
@@ -225,7 +225,7 @@ fn steps_in_time(cells: usize) -> Drawn {
         let time = 2.0 * scene.tau;
         let radii = (0..36).map(|k| 0.04 * f64::from(k)).chain([exact.contact_radius(time) / units[0]]);
         let exact = radii.map(|r| (r, exact.pressure(r * units[0], time) / units[1]));
-        chart.add("closed form (dots)", Color::BLACK, Style::Dots, exact.collect());
+        chart.add("closed form (dots)", COLORS[6], Style::Dots, exact.collect());
         chart.draw()
     };
     let pictures =
@@ -268,6 +268,6 @@ fn few_steps(few: &[&FewSteps], cells: usize) -> Result<Picture> {
         chart.add(name, color, Style::Line, half(pressure));
     }
     let dots = thinned(exact_profile(&exact, 2.0 * scene.tau, units).into_iter());
-    chart.add("closed form (dots)", Color::BLACK, Style::Dots, dots);
+    chart.add("closed form (dots)", COLORS[6], Style::Dots, dots);
     chart.draw()
 }

@@ -141,7 +141,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
             );
         });
         forces.add(name, COLORS[n], Style::Line, path.iter().map(|point| (point[0], point[1])).collect());
-        let mut map = Map::traction(&strongest)?;
+        let mut map = Map::of(&strongest, Field::Traction)?;
         map.title = format!("{name}: maximum pull");
         map.range = [-work / range, work / range];
         maps.push(map);
@@ -149,7 +149,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     progress.finish_and_clear();
     table.flush()?;
     forces.save(args.output.join("force.png"))?;
-    Map::save_row(&maps, args.output.join("traction.png"))?;
+    Map::draw_row(&maps)?.save(args.output.join("traction.png"))?;
     println!("table and pictures are in {}", args.output.display());
     Ok(())
 }

@@ -111,7 +111,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
             path.push([approach - touch, stress, share]);
             // approach, the turn, and twice on the way back
             if n == 1 && [6 * steps / 10, steps, 14 * steps / 10, 15 * steps / 10].contains(&k) {
-                let mut map = Map::traction(&contact)?;
+                let mut map = Map::of(&contact, Field::Traction)?;
                 let way = if k <= steps { "approaching" } else { "drawn back" };
                 map.title = format!("{way}: {:+.1} µm, {:.0} % in contact", 1e6 * (approach - touch), 100.0 * share);
                 map.range = [-args.work / args.range, 1.5 * args.work / args.range];
@@ -134,7 +134,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     progress.finish_and_clear();
     table.flush()?;
     loops.save(args.output.join("loops.png"))?;
-    Map::save_row(&maps, args.output.join("maps.png"))?;
+    Map::draw_row(&maps)?.save(args.output.join("maps.png"))?;
     println!("table and pictures are in {}", args.output.display());
     Ok(())
 }

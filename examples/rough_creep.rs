@@ -252,7 +252,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let points = growth.iter().map(|m| (m.time, m.patches as f64)).collect();
     chart.add("patches", COLORS[0], Style::LineAndDots, points);
     chart.save(args.output.join("patches.png"))?;
-    Map::save_row(&maps, args.output.join("maps.png"))?;
+    Map::draw_row(&maps)?.save(args.output.join("maps.png"))?;
     println!("{:.1} s; tables and pictures are in {}", began.elapsed().as_secs_f64(), args.output.display());
     Ok(())
 }

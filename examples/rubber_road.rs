@@ -106,12 +106,12 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let mut maps = Vec::new();
     for speed in [1e2, 1e-2, 1e-6] {
         let report = sliding.at([speed, 0.0], load)?;
-        let mut map = Map::pressure(sliding.fields())?;
+        let mut map = Map::of(sliding.fields(), Field::Pressure)?;
         map.title =
             format!("{}: {:.1} % in contact", measure(speed, "m/s"), 100.0 * report.contact_area / args.length.powi(2));
         maps.push(map);
     }
-    Map::save_row(&maps, args.output.join("pressure.png"))?;
+    Map::draw_row(&maps)?.save(args.output.join("pressure.png"))?;
     println!("table and pictures are in {}", args.output.display());
     Ok(())
 }
@@ -150,7 +150,7 @@ fn draw(args: &Args, grid: &Grid, road: &Rough, table: &SlidingTable) -> Result<
             let of = |all: &[(f64, [f64; 2])]| all.iter().map(|(speed, own)| (*speed, own[which])).collect();
             // each name once
             let once = |name: &str| if k == 0 { name.to_owned() } else { String::new() };
-            chart.add(once("contacts fewer than 8 cells across: unresolved"), Color::GREY, Style::Dots, of(&coarse));
+            chart.add(once("contacts fewer than 8 cells across: unresolved"), Color(190, 190, 190), Style::Dots, of(&coarse));
             chart.add(once("lines: Persson's theory"), COLORS[k], Style::Line, of(&theory));
             chart.add(format!("{kelvin} K"), COLORS[k], Style::Dots, of(&found));
         }

@@ -137,7 +137,7 @@ fn held(args: &Args, scene: &Indenters, material: &Material) -> Result<(), Box<d
         }
     }
     table.flush()?;
-    let mut map = Map::pressure(&contact)?;
+    let mut map = Map::of(&contact, Field::Pressure)?;
     map.title = format!("Three punches and a sphere, t = {HELD} τ");
     // the rims are singular: the scale ends where the map is still legible
     map.range[1] = 2.0 * args.load / (std::f64::consts::PI * args.punch * args.punch);

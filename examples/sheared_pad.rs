@@ -132,7 +132,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
             maps.iter_mut().for_each(|map| map.range[0] = 0.0);
             maps[0].title = "pressure, Q = 0.6 f P".into();
             maps[1].title = "traction, Q = 0.6 f P".into();
-            Map::save_row(&maps, args.output.join("tractions.png"))?;
+            Map::draw_row(&maps)?.save(args.output.join("tractions.png"))?;
         }
     }
     table.flush()?;

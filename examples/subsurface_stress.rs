@@ -158,7 +158,7 @@ fn draw(args: &Args, runs: &[(&str, Run)]) -> Result<(), Box<dyn Error>> {
     }
     // from zero on
     maps.iter_mut().for_each(|map| map.range[0] = 0.0);
-    Map::save_row(&maps, args.output.join("sections.png"))?;
+    Map::draw_row(&maps)?.save(args.output.join("sections.png"))?;
 
     let time = || Quantity::new("time", "s");
     let mut depth = Chart::new(

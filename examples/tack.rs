@@ -159,7 +159,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
                 curves.push((speed, path.iter().map(|point| (point[0], point[1])).collect()));
             }
             if [exponents.first(), exponents.last()].contains(&Some(&exponent)) {
-                let mut map = Map::traction(&strongest)?;
+                let mut map = Map::of(&strongest, Field::Traction)?;
                 map.title = format!("{name}, {}: maximum pull", measure(speed, "m/s"));
                 map.range = [-args.work / args.range, 0.0];
                 maps.push(map);
@@ -170,7 +170,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         works.add(name, COLORS[n], Style::LineAndDots, apparent);
         let file = name.replace(' ', "_");
         forces.save(args.output.join(format!("{file}.png")))?;
-        Map::save_row(&maps, args.output.join(format!("{file}_traction.png")))?;
+        Map::draw_row(&maps)?.save(args.output.join(format!("{file}_traction.png")))?;
         println!(
             "{name}: held on {:.3} mm² ({:.2} of the probe's section)",
             1e6 * area,

@@ -87,8 +87,8 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     (1..=10).try_for_each(|k| take(&mut contact, 0.2, shear.with_torque(0.03 * f64::from(k) * limit * arm)))?;
     table.flush()?;
     let twisted = maps(&grid, &contact, "sheared and twisted")?;
-    Map::save_row(&sheared, args.output.join("sheared.png"))?;
-    Map::save_row(&twisted, args.output.join("twisted.png"))?;
+    Map::draw_row(&sheared)?.save(args.output.join("sheared.png"))?;
+    Map::draw_row(&twisted)?.save(args.output.join("twisted.png"))?;
     let mut chart = Chart::new(
         "Pressed to 1 s, sheared to 3 s, held to 8 s, twisted to 10 s",
         Quantity::new("time", "s"),

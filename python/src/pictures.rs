@@ -105,9 +105,6 @@ impl Picture {
     }
 }
 
-/// A map of a field.
-type Draw = for<'a> fn(viscocontact::fields::Fields<'a>) -> viscocontact::Result<Map>;
-
 /// Pictures of a class that has fields.
 macro_rules! drawn {
     ($class:ident) => {
@@ -121,15 +118,9 @@ macro_rules! drawn {
                 field: &str,
                 range: Option<[f64; 2]>,
             ) -> PyResult<Picture> {
-                let fields: [(&str, Draw); 4] = [
-                    ("pressure", |of| Map::pressure(of)),
-                    ("gap", |of| Map::gap(of)),
-                    ("displacement", |of| Map::displacement(of)),
-                    ("traction", |of| Map::traction(of)),
-                ];
-                let (draw, contact) = (choice("field", field, &fields)?, slf.shown()?);
+                let (field, contact) = (choice("field", field, &FIELDS)?, slf.shown()?);
                 let picture = free(py, || {
-                    let mut map = draw(contact)?;
+                    let mut map = Map::of(contact, field)?;
                     map.range = range.unwrap_or(map.range);
                     map.draw()
                 });

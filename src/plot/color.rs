@@ -23,11 +23,11 @@ pub const COLORS: [Color; 7] = [
 
 impl Color {
     /// For cells out of contact.
-    pub const WHITE: Color = Color(255, 255, 255);
+    pub(super) const WHITE: Color = Color(255, 255, 255);
     /// For cells without a value.
-    pub const GREY: Color = Color(190, 190, 190);
+    pub(super) const GREY: Color = Color(190, 190, 190);
     /// For text and frames.
-    pub const BLACK: Color = Color(0, 0, 0);
+    pub(super) const BLACK: Color = Color(0, 0, 0);
 
     /// The colour of viridis at the fraction `value` from 0 to 1; values outside have the colour of the nearer end.
     pub(super) fn on_scale(value: f64) -> Color {

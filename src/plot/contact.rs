@@ -8,50 +8,23 @@ use crate::plot::quantity::measure;
 use crate::plot::{COLORS, Chart, Color, ColorScale, Legend, Map, Quantity, Style};
 
 impl Map {
-    /// The pressure of a contact, white out of contact; the colour scale begins at zero. A line contact, whose map is a
-    /// strip, is better shown by [`Chart::profile`].
+    /// A field of a contact, titled with its time. The contact is outlined but on [`Field::Pressure`], whose cells out of
+    /// contact are white; [`Map::outline`] outlines it there, too. The colours of pressure and gap begin at zero; those
+    /// of [`Field::Traction`], the net traction between the bodies, are red where they press, blue where they
+    /// [attract](crate::adhesion) each other and white at zero. Cells whose gap is infinite are grey in both. A line
+    /// contact, whose map is a strip, is better shown by [`Chart::profile`].
     ///
     /// # Errors
-    /// If a pressure exceeds 1e100 Pa.
-    pub fn pressure<'a>(contact: impl Into<Fields<'a>>) -> Result<Map> {
-        Map::field(contact.into(), Field::Pressure)
-    }
-
-    /// The gap of a contact, grey where it is infinite, with the contact outlined; the colour scale begins at zero.
-    ///
-    /// # Errors
-    /// If a finite gap exceeds 1e100 m.
-    pub fn gap<'a>(contact: impl Into<Fields<'a>>) -> Result<Map> {
+    /// If a finite value exceeds 1e100 in magnitude.
+    pub fn of<'a>(contact: impl Into<Fields<'a>>, field: Field) -> Result<Map> {
         let contact = contact.into();
-        Map::field(contact, Field::Gap)?.outline_contact(contact)
-    }
-
-    /// The displacement of a contact, with the contact outlined.
-    ///
-    /// # Errors
-    /// If a displacement exceeds 1e100 m in magnitude.
-    pub fn displacement<'a>(contact: impl Into<Fields<'a>>) -> Result<Map> {
-        let contact = contact.into();
-        Map::field(contact, Field::Displacement)?.outline_contact(contact)
-    }
-
-    /// The net traction between the bodies, with the contact outlined: pressure (red) less
-    /// [attraction](crate::adhesion) (blue), white at zero, grey where there is nothing to touch. [`Map::pressure`]
-    /// is the pressure of the wall alone.
-    ///
-    /// # Errors
-    /// If a traction exceeds 1e100 Pa in magnitude.
-    pub fn traction<'a>(contact: impl Into<Fields<'a>>) -> Result<Map> {
-        let contact = contact.into();
-        Map::field(contact, Field::Traction)?.outline_contact(contact)
+        let map = Map::field(contact, field)?;
+        if field == Field::Pressure { Ok(map) } else { map.outline_contact(contact) }
     }
 
     /// Outlines the cells of `contact` that are in contact.
-    ///
-    /// # Errors
-    /// If map and contact differ in the number of cells.
-    pub fn outline_contact<'a>(self, contact: impl Into<Fields<'a>>) -> Result<Map> {
-        self.outline(contact.into().pressure().iter().map(|&p| p > 0.0).collect())
+    pub(super) fn outline_contact(self, contact: Fields<'_>) -> Result<Map> {
+        self.outline(contact.pressure().iter().map(|&p| p > 0.0).collect())
     }
 
     /// A field of a contact, titled with its time.

@@ -11,7 +11,7 @@ use crate::plot::{Canvas, Color, ColorScale, DrawnAxis, Frame, Picture, Quantity
 
 /// A field on a grid as colours, by default dark for small values and light for large ones ([`ColorScale`]).
 ///
-/// [`Map::pressure`], [`Map::gap`], [`Map::displacement`] and [`Map::traction`] are the maps of a contact.
+/// [`Map::of`] is the map of a field of a contact.
 ///
 /// ```
 /// use viscocontact::{Grid, plot::{Map, Quantity}};
@@ -36,7 +36,7 @@ pub struct Map {
     /// Ends of the colour scale, in the unit of the values (default: the smallest and the largest finite value). Values
     /// outside have the colour of the nearer end, and the colour bar has a triangle at that end.
     pub range: [f64; 2],
-    /// The colours of the scale (default: sequential; [`Map::traction`] has one that diverges about zero).
+    /// The colours of the scale (default: sequential; [`Map::of`] a traction has one that diverges about zero).
     pub colors: ColorScale,
     /// The colour of cells without a value (default: white).
     pub blank: Color,
@@ -120,14 +120,6 @@ impl Map {
     /// If the ends of the colour scale are not increasing, or beyond ±1e100.
     pub fn draw(&self) -> Result<Picture> {
         Map::draw_row(std::slice::from_ref(self))
-    }
-
-    /// Draws maps side by side as [`Map::draw_row`] and writes them to a file as [`Picture::save`].
-    ///
-    /// # Errors
-    /// As [`Map::draw_row`] and [`Picture::save`].
-    pub fn save_row(maps: &[Map], path: impl AsRef<Path>) -> Result<()> {
-        Map::draw_row(maps)?.save(path)
     }
 
     /// Draws maps side by side, with one colour bar if all have the same quantity and scale, otherwise with one each.

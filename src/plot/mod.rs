@@ -2,11 +2,11 @@
 //!
 //! | picture | call |
 //! |---|---|
-//! | pressure, gap, displacement or traction as a map | [`Map::pressure`], [`Map::gap`], [`Map::displacement`], [`Map::traction`] |
+//! | pressure, gap, displacement or traction as a map | [`Map::of`] |
 //! | any field as a map | [`Map::new`] |
 //! | the stress below the surface, on a section | [`Map::section`] |
-//! | an outline of the contact on any map | [`Map::outline_contact`] |
-//! | maps, charts, or both side by side | [`Map::save_row`], [`Picture::beside`] |
+//! | an outline on any map | [`Map::outline`] |
+//! | maps, charts, or both side by side | [`Map::draw_row`], [`Picture::beside`] |
 //! | a profile along a line | [`Chart::profile`] |
 //! | quantities over time | [`Chart::history`] |
 //! | any curves, a family coloured by its parameter | [`Chart`], [`Chart::add_family`] |
@@ -31,7 +31,7 @@
 //!     animation.record(&contact)?;
 //! }
 //! animation.finish()?;
-//! Map::pressure(&contact)?.save(folder.join("pressure.png"))?;
+//! Map::of(&contact, Field::Pressure)?.save(folder.join("pressure.png"))?;
 //! Chart::history("", &times, Quantity::new("contact area", "m²"), &[("", &areas)])?.save(folder.join("area.png"))?;
 //! # std::fs::remove_dir_all(&folder).unwrap();
 //! # Ok::<(), Error>(())

@@ -148,7 +148,7 @@ const MISTAKES: &[Mistake] = &[
 ("output", "a history in a file that exists", || CsvHistory::create(path("taken.csv")?, &Metadata::new(""), &contact()?, &[], Earlier::Refuse).map(drop), "FOLDER/taken.csv cannot be written: it exists: Earlier::Replace replaces it"),
 ("output", "frames in a folder that holds frames", || frames_again().map(drop), "FOLDER/frames cannot be written: the folder contains frame_000000.npz of another run: Earlier::Replace removes it"),
 ("output", "a history in a folder that is not there", || CsvHistory::create("no/such/history.csv", &Metadata::new(""), &contact()?, &[], Earlier::Refuse).map(drop), "no/such/history.csv cannot be written: the folder no/such does not exist: create it first"),
-("extension", "a picture in a format that is not drawn", || viscocontact::plot::Map::pressure(&contact()?)?.save("pressure.pdf").map(drop), "pressure.pdf: the extension must be .png or .svg"),
+("extension", "a picture in a format that is not drawn", || viscocontact::plot::Map::of(&contact()?, Field::Pressure)?.save("pressure.pdf").map(drop), "pressure.pdf: the extension must be .png or .svg"),
 ("checkpoint_other_scene", "a checkpoint of another scene", || resumed().map(drop), "no run can be resumed from FOLDER/saved.ckpt: the checkpoint is of another scene: its grid differs from that of the contact: build the contact as it was saved"),
 ];
 

@@ -92,8 +92,8 @@ fn tractions_diverge_about_zero() {
     .build()
     .unwrap();
     contact.step(0.0, Load::approach(20.0e-6)).unwrap();
-    let map = Map::traction(&contact).unwrap();
-    assert_eq!((map.colors, Map::pressure(&contact).unwrap().colors), (ColorScale::Diverging, ColorScale::Sequential));
+    let map = Map::of(&contact, Field::Traction).unwrap();
+    assert_eq!((map.colors, Map::of(&contact, Field::Pressure).unwrap().colors), (ColorScale::Diverging, ColorScale::Sequential));
     assert!(map.range[0] < 0.0 && map.range[1] > 0.0, "{:?}", map.range);
 }
 
@@ -157,18 +157,18 @@ fn axes_begin_at_zero_where_it_is_near_and_at_a_number_where_there_are_few() {
 #[test]
 fn pressure_is_blank_out_of_contact() {
     let contact = ball();
-    let map = Map::pressure(&contact).unwrap();
+    let map = Map::of(&contact, Field::Pressure).unwrap();
     let known = map.values().iter().filter(|p| p.is_finite()).count();
     assert_eq!(known, contact.contact_cells());
     assert_eq!(map.range, [0.0, contact.fields().max_pressure()]);
     assert_eq!(map.title, "t = 0 s");
-    let gap = Map::gap(&contact).unwrap();
+    let gap = Map::of(&contact, Field::Gap).unwrap();
     assert_eq!([gap.range[0], gap.values().len() as f64], [0.0, 768.0]);
     // the outline: black pixels about the contact, which lies to the right of the middle and below it
-    let plain = Map::displacement(&contact).unwrap().outline(Vec::new());
+    let plain = Map::of(&contact, Field::Displacement).unwrap().outline(Vec::new());
     assert!(matches!(plain, Err(Error::WrongLength { field: "cells of an outline", len: 0, expected: 768, .. })));
-    let outlined = Map::displacement(&contact).unwrap().draw().unwrap();
-    let without = Map::displacement(&contact).unwrap().outline(vec![false; 768]).unwrap().draw().unwrap();
+    let outlined = Map::of(&contact, Field::Displacement).unwrap().draw().unwrap();
+    let without = Map::of(&contact, Field::Displacement).unwrap().outline(vec![false; 768]).unwrap().draw().unwrap();
     let changed = pixels(&outlined).zip(pixels(&without)).filter(|(one, other)| one != other);
     let columns: Vec<f64> = changed.map(|(([column, _], _), _)| column as f64).collect();
     let mean = columns.iter().sum::<f64>() / columns.len() as f64;
@@ -261,12 +261,13 @@ fn animations_play_back() {
     let mut last = None;
     for _ in 0..4 {
         animation.record(&contact).unwrap();
-        let mut map = Map::pressure(&contact).unwrap().outline_contact(&contact).unwrap();
+        let pressed = contact.pressure().iter().map(|p| *p > 0.0).collect();
+        let mut map = Map::of(&contact, Field::Pressure).unwrap().outline(pressed).unwrap();
         map.range = [0.0, 0.4e6];
         last = Some(map.draw().unwrap());
         contact.step(0.2, Load::force(0.3)).unwrap();
     }
-    let other = Map::draw_row(&[Map::pressure(&contact).unwrap(), Map::gap(&contact).unwrap()]).unwrap();
+    let other = Map::draw_row(&[Map::of(&contact, Field::Pressure).unwrap(), Map::of(&contact, Field::Gap).unwrap()]).unwrap();
     let refused = animation.record_picture(&other).unwrap_err();
     assert!(matches!(refused, Error::CountOutOfRange { field: "width of a frame", .. }));
     assert_eq!(animation.frames(), 4);

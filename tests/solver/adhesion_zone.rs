@@ -117,7 +117,7 @@ fn net_traction_is_shown_beside_the_pressure() {
     let mut traction = traction(contact.fields());
     assert!((0..32).all(|i| profile.traction[i] == traction[32 * i + 16]));
     assert!(profile.pressure.iter().all(|p| *p >= 0.0) && profile.traction.iter().any(|q| *q < -0.1));
-    let [net, wall] = [Map::traction(&contact).unwrap(), Map::pressure(&contact).unwrap()];
+    let [net, wall] = [Map::of(&contact, Field::Traction).unwrap(), Map::of(&contact, Field::Pressure).unwrap()];
     assert!(net.values() == traction && net.range[0] < -0.1 && wall.range[0] == 0.0);
     let grid = Grid::square(32, 8.0).unwrap();
     let mut plain = contact_of(&Sphere::new(1.0).unwrap(), grid, elastic(), Settings::default());

@@ -529,7 +529,7 @@ fn what_follows_a_run_has_its_fields() {
                 let exact = &fields.iter().find(|field| field.time == time).unwrap().pressure;
                 let frame = numbers_of(&series.record(shown).unwrap(), "pressure");
                 // cells out of contact are blank in a map
-                let map = Map::pressure(shown).unwrap();
+                let map = Map::of(shown, Field::Pressure).unwrap();
                 let drawn: Vec<f64> = map.values().iter().map(|p| if p.is_nan() { 0.0 } else { *p }).collect();
                 assert!(frame == shown.pressure() && drawn == frame, "{name}");
                 let size = exact.iter().sum::<f64>().max(0.01 * greatest / scene.grid().cell_area());
