@@ -9,7 +9,7 @@ use crate::error::{Result, non_negative};
 use crate::hereditary::{ExponentialRule, Interpolant};
 use crate::load::Load;
 use crate::rheology::{Material, TemperatureHistory};
-use crate::solver::RigidMotion;
+use crate::run::Contact;
 use crate::states::coulomb::Friction;
 use crate::states::curve::ElasticStates;
 use crate::states::elastic::state_under;
@@ -287,26 +287,12 @@ impl StatesContact {
         &self.states
     }
 
-    /// Time \[s\].
-    pub fn time(&self) -> f64 {
+    pub(super) fn time(&self) -> f64 {
         self.time
     }
 
-    /// Normal force \[N\].
-    pub fn force(&self) -> f64 {
+    pub(super) fn force(&self) -> f64 {
         self.levels.force
-    }
-
-    /// Approach of the origin \[m\].
-    pub fn approach(&self) -> f64 {
-        let of_load_point = self.prescribed.unwrap_or(self.levels.motions.depth + self.states.rest.approach);
-        of_load_point - RigidMotion { approach: 0.0, tilt: self.tilt() }.at(self.states.load_point())
-    }
-
-    /// Tilt along x1 and x2 \[rad\].
-    pub fn tilt(&self) -> [f64; 2] {
-        let (rest, turned) = (self.states.rest.tilt, self.levels.motions.tilt);
-        [rest[0] + turned[0], rest[1] + turned[1]]
     }
 
     /// Level c(t): the elastic contact at this level has the same area \[m²\]; 0 without contact.
@@ -317,16 +303,6 @@ impl StatesContact {
     /// Number of groups of levels, each with its own past.
     pub fn groups(&self) -> usize {
         self.levels.count()
-    }
-
-    /// Contact area \[m²\].
-    pub fn contact_area(&self) -> f64 {
-        self.states.area(self.levels.level)
-    }
-
-    /// Whether the bodies are apart.
-    pub fn is_separated(&self) -> bool {
-        self.levels.level == 0.0
     }
 
     /// Stiffness over the contact modulus \[m\], see

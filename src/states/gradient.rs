@@ -50,7 +50,7 @@ impl StatesContact {
     pub fn approach_gradient_unless(&self, cancelled: &AtomicBool) -> Result<Vec<f64>> {
         let (states, mut elastic) = (self.states(), self.states().elastic_contact()?);
         let mut sum = vec![0.0; elastic.fields().grid().len()];
-        if self.is_separated() {
+        if self.level() == 0.0 {
             return Ok(sum);
         }
         let mut groups = self.levels.groups().peekable();

@@ -10,6 +10,7 @@ use crate::run::control::Control;
 use crate::run::doubled::{SavedRun, lead};
 use crate::run::progress::Progress;
 use crate::run::{Contact, Stepping};
+use crate::solver::RigidMotion;
 use crate::states::contact::StatesContact;
 use crate::states::control::OnLevels;
 
@@ -33,19 +34,21 @@ impl Contact for StatesContact {
     }
 
     fn approach(&self) -> f64 {
-        StatesContact::approach(self)
+        let of_load_point = self.prescribed.unwrap_or(self.levels.motions.depth + self.states.rest.approach);
+        of_load_point - RigidMotion { approach: 0.0, tilt: self.tilt() }.at(self.states.load_point())
     }
 
     fn tilt(&self) -> [f64; 2] {
-        StatesContact::tilt(self)
+        let (rest, turned) = (self.states.rest.tilt, self.levels.motions.tilt);
+        [rest[0] + turned[0], rest[1] + turned[1]]
     }
 
     fn contact_area(&self) -> f64 {
-        StatesContact::contact_area(self)
+        self.states.area(self.levels.level)
     }
 
     fn is_separated(&self) -> bool {
-        StatesContact::is_separated(self)
+        self.levels.level == 0.0
     }
 
     fn neglect(&mut self, [least, ..]: [f64; 3]) {

@@ -6,35 +6,18 @@ use crate::error::{Result, of_other_contact};
 use crate::states::contact::StatesContact;
 
 impl StatesContact {
-    /// The contact as it is, to come back to: a clone.
-    pub fn snapshot(&self) -> StatesContact {
-        self.clone()
-    }
-
-    /// [`StatesContact::snapshot`] into one made before, without allocating where there is room.
-    pub fn snapshot_into(&self, snapshot: &mut StatesContact) {
-        match snapshot.is_of(self) {
-            true => snapshot.copy_from(self),
-            false => *snapshot = self.clone(),
-        }
-    }
-
-    /// Goes back to a snapshot, without allocating where there is room: the steps that follow are the same as they
-    /// were, bitwise, with exact states to the tolerance of the solver.
+    /// Becomes what a clone of this contact is, without allocating where there is room, to go back to it or to keep
+    /// what this contact is in a clone made before: the steps that follow are the same as they were, bitwise, with exact
+    /// states to the tolerance of the solver.
     ///
     /// # Errors
-    /// If the snapshot was made of another contact; a contact and its clones may exchange theirs.
-    pub fn restore(&mut self, snapshot: &StatesContact) -> Result<()> {
-        if !snapshot.is_of(self) {
+    /// If they are no clones of one contact.
+    pub fn restore(&mut self, clone: &StatesContact) -> Result<()> {
+        if !Arc::ptr_eq(&self.scene, &clone.scene) {
             return Err(of_other_contact());
         }
-        self.copy_from(snapshot);
+        self.copy_from(clone);
         Ok(())
-    }
-
-    /// Whether both are clones of one contact.
-    fn is_of(&self, other: &StatesContact) -> bool {
-        Arc::ptr_eq(&self.scene, &other.scene)
     }
 
     pub(super) fn copy_from(&mut self, other: &StatesContact) {

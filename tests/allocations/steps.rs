@@ -79,7 +79,7 @@ pub fn steps_on_states_allocate_nothing() {
     let body = Material::incompressible(GeneralizedMaxwell::new(1.0e5, &terms).unwrap());
     let states = ElasticStates::sphere(10.0e-3).unwrap();
     let mut contact = StatesContact::new(&states, &body).unwrap();
-    let mut snapshot = contact.snapshot();
+    let mut snapshot = contact.clone();
     allocates_nothing("steps on states", || {
         for step in 0..150 {
             let wave = 1.0 + (0.7 * f64::from(step)).sin();
@@ -90,7 +90,7 @@ pub fn steps_on_states_allocate_nothing() {
             };
             contact.step(if step % 5 == 0 { 0.0 } else { 0.02 }, load).unwrap();
             if step % 7 == 0 {
-                contact.snapshot_into(&mut snapshot);
+                snapshot.restore(&contact).unwrap();
             }
             if step % 11 == 0 {
                 contact.restore(&snapshot).unwrap();

@@ -47,7 +47,7 @@ fn contacts_on_states_come_back_to_the_last_bit() {
         let seen = |contact: &StatesContact| (format!("{contact:?}"), format!("{:?}", contact.lateral_work()));
         let mut contact = new();
         advanced(&mut contact, 0..8);
-        let mut start = contact.snapshot();
+        let mut start = contact.clone();
         contact.save(&path).unwrap();
         let bytes = contact.to_bytes().unwrap();
         assert!(std::fs::read(&path).unwrap() == bytes);
@@ -56,7 +56,7 @@ fn contacts_on_states_come_back_to_the_last_bit() {
         contact.restore(&start).unwrap();
         advanced(&mut contact, 8..20);
         assert_eq!(seen(&contact), end);
-        contact.snapshot_into(&mut start);
+        start.restore(&contact).unwrap();
         assert_eq!(format!("{start:?}"), end.0);
         let mut other = new();
         says(&other.restore(&start).unwrap_err(), "other_contact", "the snapshot was taken");
