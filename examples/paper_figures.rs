@@ -241,7 +241,7 @@ fn figure_6_as_a_study(args: &Args) -> Result<(), Box<dyn Error>> {
     let scene = |grid: Grid, settings: Settings| {
         Ok(ViscoelasticContact::builder(grid).geometry(&shape).material(material.clone()).settings(settings))
     };
-    let accuracy = if args.quick { Accuracy::new(5e-2)? } else { Accuracy::COARSE };
+    let accuracy = if args.quick { 5e-2 } else { 1e-2 };
     let study = Study::new(scene, &load, until).accuracy(accuracy).ask(Observable::MaxPressure);
     let study = study.fields_at(&[until]).run()?;
     println!("{study}");

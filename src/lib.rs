@@ -269,7 +269,7 @@ pub mod prelude {
     #[cfg(feature = "states")]
     pub use crate::states::{ElasticStates, Reach, StatesContact, Sweep};
     #[cfg(feature = "study")]
-    pub use crate::study::{Accuracy, Observable, Study};
+    pub use crate::study::{Observable, Study};
     pub use crate::{Axis, Error, Grid, InfluenceKernel};
 }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use viscocontact::plot::Chart;
 use viscocontact::run::Stepping;
-use viscocontact::study::{self as vs, Accuracy, Cost, Observable, StudyResult};
+use viscocontact::study::{self as vs, Cost, Observable, StudyResult};
 use viscocontact::{Axis, Error, ViscoelasticContact as Contact};
 
 use crate::prelude::*;
@@ -87,7 +87,7 @@ impl Study {
         work: Option<f64>,
         progress: Option<Function>,
     ) -> PyResult<Study> {
-        let (history, accuracy) = (history(load)?, Accuracy::new(accuracy).or_raise()?);
+        let history = history(load)?;
         let (geometry, body) = (&*shape.get().geometry, &material.get().material);
         let (made, temperature_of) =
             (kernel.as_ref(), temperature.as_ref().map(|temperature| &temperature.get().history));
@@ -135,7 +135,7 @@ impl Study {
         } else {
             self.study.contact().clone()
         };
-        let (grid, settings, keywords) = (Grid(self.study.grid().clone()), contact.settings(), PyDict::new(py));
+        let (grid, settings, keywords) = (Grid(self.study.contact().grid().clone()), contact.settings(), PyDict::new(py));
         keywords.set_item("tolerance", settings.tolerance())?;
         keywords.set_item("series_tolerance", settings.series_tolerance())?;
         if let Some(kernel) = &self.kernel {
@@ -163,7 +163,7 @@ impl Study {
 
     /// The cells, steps and work that a run to an accuracy is expected to take; None where a quantity that is asked for does not converge.
     fn cost_for(&self, accuracy: f64) -> PyResult<Option<([usize; 2], usize, f64)>> {
-        let cost = self.study.cost_for(Accuracy::new(accuracy).or_raise()?);
+        let cost = self.study.cost_for(accuracy).or_raise()?;
         Ok(cost.map(|Cost { cells, steps, work, .. }| (cells, steps, work)))
     }
 
@@ -182,7 +182,7 @@ impl Study {
     }
 
     fn __repr__(&self) -> String {
-        let [n1, n2] = self.study.grid().cells();
+        let [n1, n2] = self.study.contact().grid().cells();
         format!("Study({}: {n1} × {n2} cells, {} steps)", self.study.ending, self.study.times().len())
     }
 }
@@ -201,7 +201,7 @@ getters! {Study.study, of:
     /// The cells of all meshes.
     meshes: Vec<[usize; 2]> = of.meshes.iter().map(|mesh| mesh.cells).collect();
     /// The grid of the finest run.
-    grid: Grid = Grid(of.grid().clone());
+    grid: Grid = Grid(of.contact().grid().clone());
     /// Ends of the steps of the finest run [s].
     times: Vec<f64> = of.times().to_vec();
     /// The tolerance of its steps, for `follow`.

@@ -15,7 +15,7 @@ impl StudyResult {
     /// let scene = |grid: Grid, settings: Settings| {
     ///     Ok(ViscoelasticContact::builder(grid).geometry(&ball).material(body.clone()).settings(settings))
     /// };
-    /// let study = Study::new(scene, &load, 5.0).accuracy(Accuracy::COARSE).run()?;
+    /// let study = Study::new(scene, &load, 5.0).accuracy(1e-2).run()?;
     /// # let path = std::env::temp_dir().join(format!("viscocontact-doc-study-{}.png", std::process::id()));
     /// study.chart().save(&path)?;
     /// # std::fs::remove_file(&path).unwrap();

@@ -64,7 +64,7 @@ impl Runs<'_, '_> {
             run = run.cancelled_by(Arc::clone(flag));
         }
         if !self.fields_at.is_empty() {
-            let in_time = (COURSE.of_fields * accuracy.target()).min(tolerance).clamp(COURSE.least_of_fields, 0.1);
+            let in_time = (COURSE.of_fields * accuracy).min(tolerance).clamp(COURSE.least_of_fields, 0.1);
             run = run.sample_at(self.fields_at)?.fields_to(in_time)?;
         }
         let (mut times, mut values, mut fields) = (Vec::new(), vec![Vec::new(); self.observed.len()], Vec::new());

@@ -4,7 +4,6 @@ use std::fmt;
 use std::io::Write;
 use std::path::Path;
 
-use crate::Grid;
 use crate::contact::{Builder, ViscoelasticContact};
 use crate::error::{Error, Result};
 use crate::fields::{Fields, KeptFields};
@@ -12,7 +11,7 @@ use crate::file::replace;
 use crate::run::Stepping;
 use crate::study::course::COURSE;
 use crate::study::level::Level;
-use crate::study::{Accuracy, Cost};
+use crate::study::{Cost, accuracy};
 
 /// A mesh of a study, and what its run took.
 #[derive(Debug, Clone, PartialEq)]
@@ -132,7 +131,7 @@ pub(super) struct Steps {
 #[non_exhaustive]
 pub struct StudyResult {
     /// The accuracy that was asked for.
-    pub accuracy: Accuracy,
+    pub accuracy: f64,
     /// Why it ended.
     pub ending: Ending,
     /// The meshes, the coarsest first.
@@ -153,7 +152,7 @@ impl StudyResult {
         finest: Level,
         meshes: Vec<Mesh>,
         quantities: Vec<Measured>,
-        accuracy: Accuracy,
+        accuracy: f64,
         steps: Steps,
         growth: Growth,
     ) -> StudyResult {
@@ -175,11 +174,6 @@ impl StudyResult {
         &self.finest.contact
     }
 
-    /// [`StudyResult::contact`], to go on with.
-    pub fn into_contact(self) -> ViscoelasticContact {
-        self.finest.contact
-    }
-
     /// The builder of the finest run, to take it again: from rest, with [`StudyResult::stepping`] and steps that end at
     /// [`StudyResult::stops`].
     ///
@@ -191,7 +185,7 @@ impl StudyResult {
     /// let scene = |grid: Grid, settings: Settings| {
     ///     Ok(ViscoelasticContact::builder(grid).geometry(&ball).material(body.clone()).settings(settings))
     /// };
-    /// let study = Study::new(scene, &load, 5.0).accuracy(Accuracy::COARSE).run()?;
+    /// let study = Study::new(scene, &load, 5.0).accuracy(1e-2).run()?;
     /// let mut contact = study.builder().clone().build()?;
     /// let mut run = contact.follow(&load, study.stepping(), 5.0).stop_at(study.stops())?;
     /// while run.next_step()?.is_some() {}
@@ -210,11 +204,6 @@ impl StudyResult {
     /// Times at which steps of the finest run end besides \[s\].
     pub fn stops(&self) -> &[f64] {
         &self.steps.stops
-    }
-
-    /// The grid of the finest run.
-    pub fn grid(&self) -> &Grid {
-        &self.finest.grid
     }
 
     /// Ends of the steps of the finest run \[s\], each of several at one time.
@@ -245,8 +234,15 @@ impl StudyResult {
     }
 
     /// What a run to an accuracy is expected to take; `None` where a quantity that is asked for does not converge.
-    pub fn cost_for(&self, accuracy: Accuracy) -> Option<Cost> {
-        let target = accuracy.target();
+    ///
+    /// # Errors
+    /// If no study has such an accuracy.
+    pub fn cost_for(&self, accuracy: f64) -> Result<Option<Cost>> {
+        accuracy::check(accuracy)?;
+        Ok(self.cost(accuracy))
+    }
+
+    pub(super) fn cost(&self, target: f64) -> Option<Cost> {
         let (mut finer, mut shorter) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
         for own in self.quantities.iter().filter(|own| own.is_asked) {
             let mesh = own.mesh?;
@@ -307,11 +303,11 @@ fn optional(value: Option<f64>) -> String {
 /// A table: the change of each quantity from mesh to mesh, and its errors in the finest run.
 impl fmt::Display for StudyResult {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let ([n1, n2], side) = (self.grid().cells(), self.grid().spacing()[0]);
+        let ([n1, n2], side) = (self.finest.grid.cells(), self.finest.grid.spacing()[0]);
         writeln!(
             f,
             "accuracy {:.0e}: {}; {n1} × {n2} cells of {side:.2e} m, {} steps, {} runs",
-            self.accuracy.target(),
+            self.accuracy,
             self.ending,
             self.finest.steps(),
             self.runs

@@ -9,7 +9,7 @@ use crate::elastic::ElasticBuilder;
 use crate::error::Result;
 use crate::load::LoadHistory;
 use crate::states::softest_compliance;
-use crate::study::Accuracy;
+use crate::study::accuracy::settings;
 
 /// The scene on a grid, with these settings.
 pub(super) type SceneOf<'a> = Box<dyn Fn(Grid, Settings) -> Result<Builder> + 'a>;
@@ -20,7 +20,7 @@ pub(super) struct StudyScene<'a> {
     /// One for each rigid body.
     pub(super) histories: Vec<&'a dyn LoadHistory>,
     pub(super) until: f64,
-    pub(super) accuracy: Accuracy,
+    pub(super) accuracy: f64,
 }
 
 impl fmt::Debug for StudyScene<'_> {
@@ -32,7 +32,7 @@ impl fmt::Debug for StudyScene<'_> {
 impl StudyScene<'_> {
     /// The contact on a grid; its materials are fitted over the times of the run.
     pub(super) fn builder(&self, grid: Grid) -> Result<Builder> {
-        let builder = (self.on)(grid, self.accuracy.settings())?;
+        let builder = (self.on)(grid, settings(self.accuracy))?;
         Ok(match self.histories.first() {
             Some(history) if builder.times.is_none() => builder.times_of(*history, self.until),
             _ => builder,

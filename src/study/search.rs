@@ -54,14 +54,14 @@ fn on_domain(runs: &mut Runs<'_, '_>, domain: Domain, budget: &Budget) -> Result
     let mut meshes = vec![Mesh::of(&level, vec![None; observed.len()])];
     let (mut finest, mut steps, mut unconverged) = (level, steps, 0);
     loop {
-        let measured = measured(observed, &meshes, &in_time, accuracy.target());
+        let measured = measured(observed, &meshes, &in_time, accuracy);
         let asked = || measured.iter().filter(|own| own.is_asked);
         let is_open = meshes.len() > 2 && asked().any(|own| own.error().is_none());
         unconverged = if is_open { unconverged + 1 } else { 0 };
-        let ratio = asked().filter_map(|own| own.ratio(accuracy.target())).reduce(f64::max).unwrap_or(COURSE.ratio);
+        let ratio = asked().filter_map(|own| own.ratio(accuracy)).reduce(f64::max).unwrap_or(COURSE.ratio);
         let growth = Growth { steps: steps_order, convolutions: convolutions_order(&meshes) };
         let mut result = StudyResult::new(finest, meshes, measured, accuracy, steps, growth);
-        runs.expected = result.cost_for(accuracy);
+        runs.expected = result.cost(accuracy);
         let (next_across, next) = next_grid(&domain, across, ratio, budget.cells)?;
         let ending = match budget.ending(&result, &next, runs.work, unconverged) {
             Some(ending) => ending,
@@ -104,10 +104,10 @@ fn next_grid(domain: &Domain, across: f64, ratio: f64, most_cells: usize) -> Res
 impl Budget {
     /// Why a study ends with what it has, before the next mesh.
     fn ending(&self, result: &StudyResult, next: &Grid, work: f64, unconverged: usize) -> Option<Ending> {
-        let accuracy = result.accuracy.target();
+        let accuracy = result.accuracy;
         let mut asked = result.quantities.iter().filter(|own| own.is_asked);
         // what the next mesh takes by what the last one took
-        let size = next.len() as f64 / result.grid().len() as f64;
+        let size = next.len() as f64 / result.finest.grid.len() as f64;
         let expected = result.work_of_finest() * size.powf(1.0 + 0.5 * result.growth.convolutions);
         let bytes = (result.bytes() as f64 * size) as u64;
         match () {
@@ -124,7 +124,7 @@ impl Budget {
 
 /// Runs the first mesh on a domain that holds the contact, in steps that are short enough.
 fn first_mesh(runs: &mut Runs<'_, '_>, mut domain: Domain, most_cells: usize) -> Result<First> {
-    let accuracy = runs.scene.accuracy.target();
+    let accuracy = runs.scene.accuracy;
     let mut tolerance = (COURSE.tolerance * accuracy).clamp(COURSE.tolerances[0], COURSE.tolerances[1]);
     let mut across = if domain.is_given() { COURSE.across_given } else { COURSE.across };
     let mut tries = 0;

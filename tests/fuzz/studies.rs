@@ -1,7 +1,7 @@
 //! Studies of scenes, from the accuracy that is wanted.
 
 use viscocontact::contact::ViscoelasticContact;
-use viscocontact::study::{Accuracy, Study};
+use viscocontact::study::Study;
 
 use crate::engine::{Target, Verdict, finite, judged};
 use crate::models;
@@ -21,7 +21,7 @@ fn study(source: &mut Source) -> Verdict {
         let softness = material.contact_compliance(1.0).abs().max(1e-300);
         let history = models::few_turns(source, length, softness)?;
         let geometry = models::geometry(source, length)?;
-        let accuracy = if source.chance(0.5) { Accuracy::COARSE } else { Accuracy::new(source.scale(1e-2, 0.1))? };
+        let accuracy = if source.chance(0.5) { 1e-2 } else { source.scale(1e-2, 0.1) };
         let until = source.scale(0.3, 3.0);
         let scene = |grid, settings| {
             Ok(ViscoelasticContact::builder(grid).geometry(&geometry).material(material.clone()).settings(settings))

@@ -100,7 +100,7 @@ const ROOMS: [(&str, &[&str]); 17] = [
     ("plot", &["plot::"]),
     ("sliding", &["build_sliding", "SlidingSweep"]),
     ("states", &["ElasticStates", "StatesContact", "Sweep::new", "fields_to"]),
-    ("study", &["Study::", "Accuracy::"]),
+    ("study", &["Study::"]),
     ("surfaces", &["HeightMap", "Rough::", "RoughSpec"]),
     ("temperature", &["TimeTemperature", "TemperatureHistory"]),
 ];

@@ -155,7 +155,7 @@ fn nan_is_named_or_returned_elsewhere() {
     let scene = |grid, settings| {
         Ok(ViscoelasticContact::builder(grid).geometry(&sphere).material(body.clone()).settings(settings))
     };
-    let study = Study::new(scene, &nan, UNTIL).accuracy(Accuracy::COARSE).run();
+    let study = Study::new(scene, &nan, UNTIL).accuracy(1e-2).run();
     assert!(matches!(study, Err(Error::LoadOutOfRange { field: "normal force", .. })));
     let broken = viscocontact::load::laws::all(&nan, &[0.0, 2.0]).unwrap_err();
     assert_eq!((broken.law, broken.quantity), ("every load is one that a step accepts", "normal force"));

@@ -196,7 +196,7 @@ fn runs_under_the_least_loads_end() {
                     }
                     if load.tilt()[0] == Tilt::Fixed(0.0) {
                         let scene = |grid, settings| Ok(builder_of(shape, grid, material.clone()).settings(settings));
-                        let study = Study::new(scene, &history, 1.0).accuracy(Accuracy::COARSE).work(1e5);
+                        let study = Study::new(scene, &history, 1.0).accuracy(1e-2).work(1e5);
                         let _ = study.run();
                     }
                 }

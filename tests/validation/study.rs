@@ -12,11 +12,11 @@ use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
 use viscocontact::study::{Ending, StudyResult};
 use viscocontact::{Axis, Error};
 
-const PRESETS: [Accuracy; 3] = [Accuracy::COARSE, Accuracy::STANDARD, Accuracy::FINE];
+const PRESETS: [f64; 3] = [1e-2, 1e-3, 1e-4];
 
 fn study<'a>(shape: &'a dyn Geometry, material: &'a Material, history: &'a dyn LoadHistory, until: f64) -> Study<'a> {
     let scene = |grid, settings| Ok(builder_of(shape, grid, material.clone()).settings(settings));
-    Study::new(scene, history, until).accuracy(Accuracy::COARSE)
+    Study::new(scene, history, until).accuracy(1e-2)
 }
 
 /// Compares approach and greatest pressure at the ends of steps with exact ones; the greatest pressure is that of the run.
@@ -30,7 +30,7 @@ fn check(name: &str, study: &StudyResult, exact: impl Fn(f64) -> [f64; 2]) {
     let pressure = (study.values("maximum pressure").unwrap()[0] / peak - 1.0).abs();
     let told = ["approach", "maximum pressure"].map(|name| study.measured(name).unwrap().error());
     println!("{name}: approach {approach:.1e}, pressure {pressure:.1e}\n{study}");
-    let ([n1, _], target) = (study.grid().cells(), study.accuracy.target());
+    let ([n1, _], target) = (study.contact().grid().cells(), study.accuracy);
     let show = |value: Option<f64>| value.map_or("–".to_owned(), |value| format!("{value:.1e}"));
     let of_pressure = if peak > 0.0 { show(Some(pressure)) } else { "–".to_owned() };
     let [of_approach, told_pressure] = told.map(show);
@@ -56,13 +56,13 @@ fn held_spheres_are_as_accurate_as_asked() {
             let study = study(&sphere, &material, &load, until).accuracy(accuracy).ask(Observable::MaxPressure);
             let study = study.run().unwrap();
             check(name, &study, |t| [exact.approach(t), exact.pressure(0.0, t)]);
-            found.push(format!("{}² cells and {} steps", study.grid().cells()[0], study.times().len()));
+            found.push(format!("{}² cells and {} steps", study.contact().grid().cells()[0], study.times().len()));
         }
         if name == "Maxwell" {
             figures::figure("studies of a sphere", &found.join(", ")).unwrap();
-            let study = study(&sphere, &material, &load, until).accuracy(Accuracy::STANDARD).run().unwrap();
+            let study = study(&sphere, &material, &load, until).accuracy(1e-3).run().unwrap();
             let error = study.measured("approach").unwrap().error().unwrap();
-            let size = format!("{}² cells and {} steps", study.grid().cells()[0], study.times().len());
+            let size = format!("{}² cells and {} steps", study.contact().grid().cells()[0], study.times().len());
             figures::figure("study of the README", &format!("{size}, with a measured error of {error:.1e}")).unwrap();
         }
     }
@@ -76,13 +76,13 @@ fn warming_spheres_are_as_accurate_as_asked() {
     let law = TimeTemperature::wlf(17.44, 51.6, 263.15).unwrap();
     let warming = TemperatureHistory::table(law.clone(), &[(1.0, 263.15), (5.0, 293.15)]).unwrap();
     let exact = GrowingSphere::step(RADIUS, &body, 1.0).unwrap();
-    let on = |temperature: &TemperatureHistory, accuracy: Accuracy| {
+    let on = |temperature: &TemperatureHistory, accuracy: f64| {
         let scene = |grid, settings| {
             Ok(builder_of(&sphere, grid, body.clone()).settings(settings).temperature(temperature.clone()))
         };
         Study::new(scene, &load, 6.0).accuracy(accuracy).run()
     };
-    for accuracy in [Accuracy::COARSE, Accuracy::STANDARD] {
+    for accuracy in [1e-2, 1e-3] {
         let study = on(&warming, accuracy).unwrap();
         assert!(study.contact().reduced_time() > 1e3);
         check("warming", &study, |t| {
@@ -92,7 +92,7 @@ fn warming_spheres_are_as_accurate_as_asked() {
     }
     // below the end of the law
     let cold = TemperatureHistory::function(law, |t| 263.15 - 20.0 * t, &[]).unwrap();
-    let refused = on(&cold, Accuracy::COARSE).unwrap_err();
+    let refused = on(&cold, 1e-2).unwrap_err();
     assert!(matches!(refused, Error::OutOfRange { field: "temperature", .. }), "{refused}");
 }
 
@@ -100,7 +100,7 @@ fn warming_spheres_are_as_accurate_as_asked() {
 #[test]
 fn a_study_is_a_thousand_times_less_work_than_the_papers_run() {
     let (sphere, load) = (Sphere::new(RADIUS).unwrap(), StepLoad::new(Load::force(1.0)).unwrap());
-    let study = study(&sphere, &maxwell(), &load, 2.0).accuracy(Accuracy::STANDARD).run().unwrap();
+    let study = study(&sphere, &maxwell(), &load, 2.0).accuracy(1e-3).run().unwrap();
     // 256² cells and 100 steps, the convolutions counted on 32² cells, where contact problems take fewer
     let (_, convolutions) = StepLoadedSphere::maxwell().literally(32, 100).unwrap();
     let ratio = convolutions.iter().sum::<usize>() as f64 * 256.0_f64.powi(2) / study.work;
@@ -114,7 +114,7 @@ fn punches_converge_slowly_and_their_pressure_never() {
     let radius = 1.0e-3;
     let (punch, material, load) =
         (FlatPunch::circular(radius).unwrap(), maxwell(), StepLoad::new(Load::force(1.0)).unwrap());
-    let study_of = |accuracy: f64| study(&punch, &material, &load, 2.0).accuracy(Accuracy::new(accuracy).unwrap());
+    let study_of = |accuracy: f64| study(&punch, &material, &load, 2.0).accuracy(accuracy);
     let exact = |t: f64| [material.contact_compliance(t) / (2.0 * radius), 0.0];
     let coarse = study_of(1e-2).run().unwrap();
     check("punch", &coarse, exact);
@@ -123,7 +123,7 @@ fn punches_converge_slowly_and_their_pressure_never() {
     let asked = study_of(3e-2).ask(Observable::MaxPressure).run().unwrap();
     assert_eq!(asked.ending, Ending::NoConvergence);
     // first order: a hundred times the cells a side for a hundredth of the error
-    let (fine, cost) = (study_of(1e-5).run().unwrap(), coarse.cost_for(Accuracy::new(1e-5).unwrap()).unwrap());
+    let (fine, cost) = (study_of(1e-5).run().unwrap(), coarse.cost_for(1e-5).unwrap().unwrap());
     assert!(
         fine.ending == Ending::Cells && cost.cells[0] > 10_000 && !fine.is_converged(),
         "{:?} {cost:?}",
@@ -136,9 +136,9 @@ fn punches_converge_slowly_and_their_pressure_never() {
 fn costs_are_told_before_the_dear_runs() {
     let (sphere, load) = (Sphere::new(RADIUS).unwrap(), Ramp::new(Load::force(0.0), Load::force(1.0), 1.0).unwrap());
     let body = zener();
-    let coarse = study(&sphere, &body, &load, 5.0).accuracy(Accuracy::STANDARD).run().unwrap();
-    let told = coarse.cost_for(Accuracy::FINE).unwrap();
-    let fine = study(&sphere, &body, &load, 5.0).accuracy(Accuracy::FINE).run().unwrap();
+    let coarse = study(&sphere, &body, &load, 5.0).accuracy(1e-3).run().unwrap();
+    let told = coarse.cost_for(1e-4).unwrap().unwrap();
+    let fine = study(&sphere, &body, &load, 5.0).accuracy(1e-4).run().unwrap();
     let last = fine.meshes.last().unwrap();
     let took = last.convolutions * last.cells.iter().product::<usize>() as f64;
     println!("{told:?}\n{coarse}\n{fine}");
@@ -146,17 +146,17 @@ fn costs_are_told_before_the_dear_runs() {
     assert!((0.1..10.0).contains(&(told.work / took)), "{} {took}", told.work);
     // of a budget of work nothing is spent that is not there
     let budget = 0.3 * fine.work;
-    let less = study(&sphere, &body, &load, 5.0).accuracy(Accuracy::FINE).work(budget).run().unwrap();
+    let less = study(&sphere, &body, &load, 5.0).accuracy(1e-4).work(budget).run().unwrap();
     assert!(less.ending == Ending::Work && less.work < 1.2 * budget && less.meshes.len() > 1, "{less}");
     assert!(less.measured("approach").unwrap().error().unwrap() > 1e-4);
-    let small = study(&sphere, &body, &load, 5.0).accuracy(Accuracy::FINE).memory(coarse.bytes()).run().unwrap();
+    let small = study(&sphere, &body, &load, 5.0).accuracy(1e-4).memory(coarse.bytes()).run().unwrap();
     assert!(small.ending == Ending::Memory && small.bytes() <= coarse.bytes(), "{small}");
 }
 
 #[test]
 fn studies_find_the_domain_whatever_its_size() {
     let load = |force: f64| StepLoad::new(Load::force(force)).unwrap();
-    let half = |study: &StudyResult, axis: usize| 0.5 * study.grid().lengths()[axis] / 1.12;
+    let half = |study: &StudyResult, axis: usize| 0.5 * study.contact().grid().lengths()[axis] / 1.12;
     for (scale, modulus, force) in [(1e-9, 1e9, 1e-9_f64), (1e-3, 1e6, 1.0), (1e3, 1e10, 1e12), (1.0, 1e-3, 1e-6)] {
         let sphere = Sphere::new(scale).unwrap();
         let material = Material::incompressible(Elastic::new(modulus).unwrap());
@@ -167,7 +167,7 @@ fn studies_find_the_domain_whatever_its_size() {
     }
     // an ellipse gets a domain of its own shape
     let (ellipsoid, material) = (Ellipsoid::new(10.0e-3, 160.0e-3).unwrap(), elastic());
-    let [l1, l2] = study(&ellipsoid, &material, &load(1.0), 1.0).run().unwrap().grid().lengths();
+    let [l1, l2] = study(&ellipsoid, &material, &load(1.0), 1.0).run().unwrap().contact().grid().lengths();
     assert!(l2 > 3.0 * l1, "{l1} {l2}");
     // a driven approach, and one that never touches
     let sphere = Sphere::new(RADIUS).unwrap();
@@ -201,7 +201,7 @@ fn what_a_study_cannot_be_is_refused() {
         (Study::along_each(sticky, &[], 1.0).run().err(), "load histories of the rigid bodies"),
     ]);
     not_covered([(Study::new(sticky, &driven, 1.0).run().err(), "Study::domain")]);
-    refused([0.0, -1.0, 1e-7, 0.2, 5.0, f64::NAN].map(|target| (Accuracy::new(target).err(), "accuracy")));
+    refused([0.0, -1.0, 1e-7, 0.2, 5.0, f64::NAN].map(|target| (study().accuracy(target).run().err(), "accuracy")));
 }
 
 /// Surfaces that attract each other on a domain that is given, from the first mesh that resolves the zone.
@@ -214,7 +214,7 @@ fn attraction_is_studied_on_a_given_domain() {
         let law = ExponentialAttraction::new(0.05, 2.0e-6)?;
         Ok(builder_of(&sphere, grid, body.clone()).settings(settings).attraction(law))
     };
-    let study = Study::new(scene, &load, 0.2).accuracy(Accuracy::new(3e-2).unwrap()).domain([0.3e-3; 2]).run().unwrap();
+    let study = Study::new(scene, &load, 0.2).accuracy(3e-2).domain([0.3e-3; 2]).run().unwrap();
     println!("{study}");
     assert!(study.is_converged() && study.contact().force() < 0.0);
 }
@@ -227,11 +227,11 @@ fn several_bodies_and_closures_are_studied() {
     let held = StepLoad::new(Load::approach(10.0e-6)).unwrap();
     let pressed = Ramp::new(Load::force(0.0), Load::force(0.3), 1.0).unwrap();
     let scene = |grid, settings| Ok(builder_of(&left, grid, body.clone()).another_body(&right).settings(settings));
-    let study = Study::along_each(scene, &[&held, &pressed], 2.0).accuracy(Accuracy::COARSE);
+    let study = Study::along_each(scene, &[&held, &pressed], 2.0).accuracy(1e-2);
     let study = study.ask_own("other approach", |fields| fields.body(1).unwrap().approach).run().unwrap();
     println!("{study}");
     assert!(study.is_converged() && study.measured("other approach").unwrap().error().unwrap() < 1e-2);
-    assert!(study.grid().lengths()[0] > 1.5 * study.grid().lengths()[1]);
+    assert!(study.contact().grid().lengths()[0] > 1.5 * study.contact().grid().lengths()[1]);
 
     let material = Material::incompressible(FnRheology::new(|t: f64| 1.0e-6 * (1.0 + t.sqrt())));
     let (sphere, load) = (Sphere::new(RADIUS).unwrap(), StepLoad::new(Load::force(1.0)).unwrap());
@@ -271,7 +271,7 @@ fn studies_report_their_progress_and_can_be_cancelled() {
 #[test]
 fn tables_of_a_study_are_read_back() {
     let (sphere, load, material) = (Sphere::new(RADIUS).unwrap(), StepLoad::new(Load::force(1.0)).unwrap(), maxwell());
-    let study = study(&sphere, &material, &load, 2.0).fields_at(&[1.0, 2.0]).accuracy(Accuracy::new(5e-2).unwrap());
+    let study = study(&sphere, &material, &load, 2.0).fields_at(&[1.0, 2.0]).accuracy(5e-2);
     let study = study.run().unwrap();
     let path = std::env::temp_dir().join(format!("viscocontact-study-{}.csv", std::process::id()));
     study.write_csv(&path).unwrap();
@@ -313,7 +313,7 @@ fn errors_of_histories_come_out_of_studies() {
             Ok(Load::force(0.5 * (0.2 + (2.0 * t).sin().abs())))
         });
         let result =
-            study(&sphere, &body, &history, until).fields_at(&[1.0, 2.0]).accuracy(Accuracy::new(5e-2).unwrap()).run();
+            study(&sphere, &body, &history, until).fields_at(&[1.0, 2.0]).accuracy(5e-2).run();
         if is_met.load(std::sync::atomic::Ordering::Relaxed) {
             seen += 1;
             let failed = match &result {

@@ -100,7 +100,7 @@ pub(super) struct Scene {
     pub(super) history: Box<dyn LoadHistory>,
     pub(super) until: f64,
     pub(super) by_force: bool,
-    pub(super) accuracy: Accuracy,
+    pub(super) accuracy: f64,
     /// Whether the area is asked for, too.
     pub(super) area: bool,
     /// How far the shape is aside of the load \[m\].
@@ -124,8 +124,8 @@ pub(super) fn history(draws: &mut Draws, full: &dyn Fn(f64) -> Load, until: f64)
     (name, history)
 }
 
-pub(super) fn accuracy(draws: &mut Draws) -> Accuracy {
-    if draws.chance(0.7) { Accuracy::COARSE } else { Accuracy::STANDARD }
+pub(super) fn accuracy(draws: &mut Draws) -> f64 {
+    if draws.chance(0.7) { 1e-2 } else { 1e-3 }
 }
 
 /// A body that answers at once and creeps up to 1000-fold.
@@ -210,7 +210,7 @@ fn tilting(seed: u64, number: u64) -> Scene {
     let table: Vec<_> = [0.0, 0.45, 1.0].into_iter().zip(loads).collect();
     let (history, name) =
         (PiecewiseLinear::new(&table).unwrap(), format!("{seed}:{number} tilting, creep ×{ratio:.1}"));
-    let (history, accuracy) = (Box::new(history), Accuracy::COARSE);
+    let (history, accuracy) = (Box::new(history), 1e-2);
     let (shape, until, area, aside) = (None, 1.0, draws.chance(0.3), 0.0);
     Scene { name, shape, geometry, other: None, material, history, until, by_force, accuracy, area, aside, ratio }
 }
@@ -280,11 +280,11 @@ fn of_states(scene: &Scene, shape: Shape, times: &[f64]) -> Truth {
 
 /// By a run on cells of half the side, in finer steps.
 fn of_finer_run(scene: &Scene, study: &StudyResult, times: &[f64]) -> Result<Truth, Error> {
-    let cells = study.grid().cells().map(|cells| if cells == 1 { 1 } else { 2 * cells });
-    let grid = Grid::new(cells, study.grid().lengths()).unwrap();
+    let cells = study.contact().grid().cells().map(|cells| if cells == 1 { 1 } else { 2 * cells });
+    let grid = Grid::new(cells, study.contact().grid().lengths()).unwrap();
     let settings = Settings::default().with_tolerance(1e-7);
     let mut contact = scene.builder(grid, settings)?.build()?;
-    let stepping = Stepping::adaptive(0.036 * scene.accuracy.target());
+    let stepping = Stepping::adaptive(0.036 * scene.accuracy);
     let mut run = contact.follow(&scene.history, stepping, scene.until).stop_at(times)?;
     let (mut states, mut highest) = (Vec::<(f64, State)>::new(), 0.0_f64);
     while let Some(report) = run.next_step()? {
@@ -370,7 +370,7 @@ pub(super) fn tell_their_errors(scenes: impl Iterator<Item = Scene>, limit: u64)
                 continue;
             }
         };
-        let asked = scene.accuracy.target();
+        let asked = scene.accuracy;
         let show = |value: Option<f64>| value.map_or("-".into(), |value| format!("{value:.1e}"));
         let all = errors.iter().zip([main, area, peak]).map(|(&error, told)| format!("{} {}", show(error), show(told)));
         let all = all.collect::<Vec<_>>().join(", ");
@@ -378,7 +378,7 @@ pub(super) fn tell_their_errors(scenes: impl Iterator<Item = Scene>, limit: u64)
             "{}: {} | {:?} {} steps, {} runs, work {:.3e} | error and told: {all}",
             scene.name,
             result.ending,
-            result.grid().cells(),
+            result.contact().grid().cells(),
             result.times().len(),
             result.runs,
             result.work

@@ -288,7 +288,7 @@ const SCENES: &[Scene] = &[
 }, "datum"),
 ("a study of surfaces that attract each other, of which no domain is given", || {
     let scene = |grid, settings| Ok(builder_on(grid, zener()).settings(settings).attraction(ExponentialAttraction::new(0.05, 1.0e-6)?));
-    Study::new(scene, &StepLoad::new(Load::force(1.0e-3))?, 1.0).accuracy(Accuracy::COARSE).run().map(|_| String::new())
+    Study::new(scene, &StepLoad::new(Load::force(1.0e-3))?, 1.0).accuracy(1e-2).run().map(|_| String::new())
 }, "Study::domain"),
 ("a file of a profilometer", || HeightMap::read("scan.opd").map(|_| String::new()), "exported as GSF by Gwyddion"),
 ("an attraction over less than a cell", || sticky(0.05, 1.0e-9), "cells"),
