@@ -96,7 +96,8 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         rows.push(row);
         // half of the greatest share
         if rows.len() == args.loads / 2 {
-            Map::draw_row(&[Map::of(&contact, Field::Pressure)?, Map::of(&contact, Field::Gap)?])?.save(args.output.join("half_way.png"))?;
+            Map::draw_row(&[Map::of(&contact, Field::Pressure)?, Map::of(&contact, Field::Gap)?])?
+                .save(args.output.join("half_way.png"))?;
         }
     }
     progress.finish_and_clear();

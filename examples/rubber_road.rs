@@ -150,7 +150,12 @@ fn draw(args: &Args, grid: &Grid, road: &Rough, table: &SlidingTable) -> Result<
             let of = |all: &[(f64, [f64; 2])]| all.iter().map(|(speed, own)| (*speed, own[which])).collect();
             // each name once
             let once = |name: &str| if k == 0 { name.to_owned() } else { String::new() };
-            chart.add(once("contacts fewer than 8 cells across: unresolved"), Color(190, 190, 190), Style::Dots, of(&coarse));
+            chart.add(
+                once("contacts fewer than 8 cells across: unresolved"),
+                Color(190, 190, 190),
+                Style::Dots,
+                of(&coarse),
+            );
             chart.add(once("lines: Persson's theory"), COLORS[k], Style::Line, of(&theory));
             chart.add(format!("{kelvin} K"), COLORS[k], Style::Dots, of(&found));
         }

@@ -218,7 +218,7 @@ mod sum;
 
 pub use axis::Axis;
 pub use contact::ViscoelasticContact;
-pub use error::{Error, ErrorKind, OutputError, Refusal, Result, Special, UserError};
+pub use error::{Error, ErrorKind, OutputError, Refusal, Result, UserError};
 pub use grid::Grid;
 #[cfg(feature = "text")]
 pub use input::{Delimiter, TextFormat};

@@ -37,7 +37,11 @@ macro_rules! laws {
                 ) -> PyResult<Attraction> {
                     let law = match (range, max_traction) {
                         (Some(range), None) => ad::$law::new(work, range),
-                        (None, Some(max_traction)) => ad::$law::of_traction(work, max_traction),
+                        (None, Some(most)) if most > 0.0 && most.is_finite() => ad::$law::new(work, work / most),
+                        (None, Some(most)) => {
+                            let says = format!("max_traction = {most:?} is not allowed: it must be finite and > 0");
+                            return Err(PyValueError::new_err(says));
+                        }
                         _ => return Err(PyTypeError::new_err("give range or max_traction, one of them")),
                     };
                     $(let law = law.and_then(|law| $more.map_or(Ok(law), |width| law.with_width(width)));)*

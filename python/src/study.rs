@@ -135,7 +135,8 @@ impl Study {
         } else {
             self.study.contact().clone()
         };
-        let (grid, settings, keywords) = (Grid(self.study.contact().grid().clone()), contact.settings(), PyDict::new(py));
+        let (grid, settings, keywords) =
+            (Grid(self.study.contact().grid().clone()), contact.fields().settings(), PyDict::new(py));
         keywords.set_item("tolerance", settings.tolerance())?;
         keywords.set_item("series_tolerance", settings.series_tolerance())?;
         if let Some(kernel) = &self.kernel {

@@ -25,20 +25,7 @@ impl Dugdale {
     /// # Errors
     /// If one of them is not finite and positive, or w/ρ is not.
     pub fn new(work: f64, range: f64) -> Result<Dugdale> {
-        Scales::new(work, range).map(Dugdale::of)
-    }
-
-    /// A law of the `work` of separation w \[J/m²\] and the `maximum` traction s(0) \[Pa\], with an end of width
-    /// b = 1/2 of the range.
-    ///
-    /// # Errors
-    /// As [`Dugdale::new`].
-    pub fn of_traction(work: f64, maximum: f64) -> Result<Dugdale> {
-        Scales::of_traction(work, maximum).map(Dugdale::of)
-    }
-
-    fn of(scales: Scales) -> Dugdale {
-        Dugdale { scales, width: 0.5 }
+        Ok(Dugdale { scales: Scales::new(work, range)?, width: 0.5 })
     }
 
     /// Another width b of its end, over the range: at b = 2 it is

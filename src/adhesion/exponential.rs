@@ -22,14 +22,6 @@ impl ExponentialAttraction {
     pub fn new(work: f64, range: f64) -> Result<ExponentialAttraction> {
         Scales::new(work, range).map(ExponentialAttraction)
     }
-
-    /// A law of the `work` of separation w \[J/m²\] and the `maximum` traction s(0) \[Pa\].
-    ///
-    /// # Errors
-    /// As [`ExponentialAttraction::new`].
-    pub fn of_traction(work: f64, maximum: f64) -> Result<ExponentialAttraction> {
-        Scales::of_traction(work, maximum).map(ExponentialAttraction)
-    }
 }
 
 impl Attraction for ExponentialAttraction {

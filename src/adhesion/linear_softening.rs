@@ -22,14 +22,6 @@ impl LinearSoftening {
         Scales::new(work, range).map(LinearSoftening)
     }
 
-    /// A law of the `work` of separation w \[J/m²\] and the `maximum` traction s(0) \[Pa\].
-    ///
-    /// # Errors
-    /// As [`LinearSoftening::new`].
-    pub fn of_traction(work: f64, maximum: f64) -> Result<LinearSoftening> {
-        Scales::of_traction(work, maximum).map(LinearSoftening)
-    }
-
     /// 1 − h/2ρ, at least zero.
     fn share(&self, gap: f64) -> f64 {
         (1.0 - 0.5 * gap / self.0.range).max(0.0)

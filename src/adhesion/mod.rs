@@ -10,8 +10,8 @@
 //! | [`LinearSoftening`] | (w/ρ) (1 − h/2ρ) up to h = 2ρ |
 //! | [`Dugdale`] | w/ρ up to h = ρ, with a linear end of stated width |
 //!
-//! Every law is given by w and either ρ ([`Attraction::range`]) or the maximum traction s(0). Laws of the same w and
-//! ρ differ little in the pull-off force. A Lennard-Jones law with its repulsive branch is not offered: in place of
+//! Every law is given by w and ρ ([`Attraction::range`]), which is w over the maximum traction s(0). Laws of the same w
+//! and ρ differ little in the pull-off force. A Lennard-Jones law with its repulsive branch is not offered: in place of
 //! the wall it would put a stiff spring.
 
 mod dugdale;
@@ -57,12 +57,6 @@ impl Scales {
         length("range of the attraction", range)?;
         positive("maximum traction of the attraction", work / range)?;
         Ok(Scales { work, range })
-    }
-
-    fn of_traction(work: f64, greatest: f64) -> Result<Scales> {
-        positive("work of separation", work)?;
-        positive("maximum traction of the attraction", greatest)?;
-        Scales::new(work, finite("range of the attraction", work / greatest)?)
     }
 
     /// s(0).

@@ -23,14 +23,6 @@ impl VanDerWaals {
         Scales::new(work, range).map(VanDerWaals)
     }
 
-    /// A law of the `work` of separation w \[J/m²\] and the `maximum` traction s(0) \[Pa\].
-    ///
-    /// # Errors
-    /// As [`VanDerWaals::new`].
-    pub fn of_traction(work: f64, maximum: f64) -> Result<VanDerWaals> {
-        Scales::of_traction(work, maximum).map(VanDerWaals)
-    }
-
     /// h₀/(h₀ + h).
     fn nearness(&self, gap: f64) -> f64 {
         1.0 / (1.0 + 0.5 * gap / self.0.range)

@@ -1,15 +1,12 @@
 //! What some contacts do not cover: the table of parts and calls, and what to do in place of each.
 
-use std::fmt;
-
 use Special::{Attraction, FixedToBodies, FixedToIndenter, Friction, OwnContact, Ranks, SteadyMotion};
 
 use super::{Error, Result};
 
 /// What makes a scene special, so that it does not cover all that others do.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum Special {
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Special {
     /// Surfaces attract each other ([`crate::adhesion`]).
     Attraction,
     /// The contact moves steadily ([`crate::sliding`]).
@@ -26,9 +23,10 @@ pub enum Special {
     OwnContact,
 }
 
-impl fmt::Display for Special {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
+impl Special {
+    /// What [`Error::NotCovered`] says of it.
+    fn said(self) -> &'static str {
+        match self {
             Attraction => "where surfaces attract each other",
             SteadyMotion => "in steady motion",
             Ranks => "on rows that ranks share out",
@@ -36,7 +34,7 @@ impl fmt::Display for Special {
             FixedToIndenter => "on a grid that is fixed to the indenter",
             Friction => "where bodies rub",
             OwnContact => "of a contact of your own",
-        })
+        }
     }
 }
 
@@ -99,7 +97,7 @@ impl Case {
     }
 
     fn refused(self, (special, remedy): (Special, &'static str)) -> Error {
-        Error::NotCovered { special, what: self.0, remedy }
+        Error::NotCovered { special: special.said(), what: self.0, remedy }
     }
 
     /// The error in the first of its special scenes.

@@ -16,7 +16,7 @@ pub(crate) use checks::{
     LONGEST, count_within, exact_length, finite, in_order, least_length, length, missing, non_negative,
     of_other_contact, poisson_ratio, positive, within,
 };
-pub use coverage::Special;
+pub(crate) use coverage::Special;
 pub use kind::ErrorKind;
 pub use output::OutputError;
 pub use ranks::RanksError;
@@ -51,7 +51,7 @@ pub enum Error {
     #[error("{what} is not covered {special}: {remedy}")]
     NotCovered {
         /// What makes the scene special.
-        special: Special,
+        special: &'static str,
         /// The request, or what the scene has.
         what: &'static str,
         /// What to do.

@@ -42,7 +42,7 @@ impl OutputError {
     /// The kind of the cause: [`AlreadyExists`](io::ErrorKind::AlreadyExists) where there are files of an earlier run,
     /// [`InvalidInput`](io::ErrorKind::InvalidInput) where the requested output cannot be written, else the kind of the
     /// system's error.
-    pub fn kind(&self) -> io::ErrorKind {
+    pub(crate) fn kind(&self) -> io::ErrorKind {
         self.cause.kind()
     }
 }

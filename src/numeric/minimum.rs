@@ -2,12 +2,7 @@
 
 /// Where `of` has its minimum between `low` and `high`, in the units of both, if it has no other there: by so many
 /// golden sections, each of which leaves 0.618 of the interval (Kiefer, Proc. Am. Math. Soc. 4, 1953).
-///
-/// ```
-/// let found = viscocontact::numeric::golden_section(0.0, 3.0, 40, |x| (x - 1.0) * (x - 1.0));
-/// assert!((found - 1.0).abs() < 1e-7);
-/// ```
-pub fn golden_section(mut low: f64, mut high: f64, sections: usize, of: impl Fn(f64) -> f64) -> f64 {
+pub(crate) fn golden_section(mut low: f64, mut high: f64, sections: usize, of: impl Fn(f64) -> f64) -> f64 {
     let golden = 0.5 * (5f64.sqrt() - 1.0);
     for _ in 0..sections {
         let [inner, outer] = [high - golden * (high - low), low + golden * (high - low)];

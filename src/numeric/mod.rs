@@ -10,7 +10,8 @@ mod root;
 pub use hermite::{hermite, hermite_slope};
 #[cfg(feature = "data")]
 pub use least_squares::{LeastSquares, least_squares};
-pub use minimum::{golden_section, minimum};
+pub(crate) use minimum::golden_section;
+pub use minimum::minimum;
 pub use non_negative::non_negative_least_squares;
 pub use root::root;
 

@@ -49,10 +49,4 @@ impl CreepSpectrum {
     pub fn complex_modulus(&self, omega: f64) -> Complex64 {
         if omega == 0.0 && self.fluidity() > 0.0 { Complex64::ZERO } else { self.complex_compliance(omega).finv() }
     }
-
-    /// Loss factor tan δ = G″/G′ = J″/J′ at `omega` > 0 \[rad/s\].
-    pub fn loss_tangent(&self, omega: f64) -> f64 {
-        let compliance = self.complex_compliance(omega);
-        -compliance.im / compliance.re
-    }
 }

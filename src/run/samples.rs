@@ -15,7 +15,6 @@ use crate::run::progress::rounding;
 pub struct Sample<'a, C: Contact = ViscoelasticContact> {
     contact: Cow<'a, C>,
     report: StepReport,
-    at_end: bool,
     is_asked_for: bool,
     exact: Option<Exact<C>>,
     field: Option<FieldReport>,
@@ -41,14 +40,9 @@ impl<C: Contact> Sample<'_, C> {
     }
 
     /// The report of the step from the start of the run's step to this time, with the work that the sample took; its
-    /// [`StepReport::time_error`] is the error of the whole step. At the end of the step it is the report of the step.
+    /// [`StepReport::time_error`] is the error of the whole step. At the end of the step, where a sample takes no work, it is the report of the step.
     pub fn report(&self) -> &StepReport {
         &self.report
-    }
-
-    /// Whether this is the end of the step: it takes no work.
-    pub fn is_end_of_step(&self) -> bool {
-        self.at_end
     }
 
     /// How exact its pressure is, if fields were asked for ([`Run::fields_to`]).
@@ -113,7 +107,6 @@ impl<C: Contact> Run<'_, C> {
                 return Some(found.map(|(exact, field)| Sample {
                     contact: Cow::Borrowed(contact),
                     report: whole,
-                    at_end: true,
                     is_asked_for,
                     exact,
                     field,
@@ -124,7 +117,7 @@ impl<C: Contact> Run<'_, C> {
             Some(self.sample_within_step(next).and_then(|(contact, report)| {
                 let report = StepReport { time_error: whole.time_error, ..report };
                 let (exact, field) = self.exact_within_step(&contact, next)?;
-                Ok(Sample { contact: Cow::Owned(contact), report, at_end: false, is_asked_for: true, exact, field })
+                Ok(Sample { contact: Cow::Owned(contact), report, is_asked_for: true, exact, field })
             }))
         })
     }

@@ -8,10 +8,9 @@ use super::bodies::Bodies;
 use super::creep::Creep;
 use super::{SteadySliding, coverage, gmres};
 use crate::contact::{Builder, Frame, Scene};
-use crate::equilibrium::{Ground, Held, Indenter, Region};
+use crate::equilibrium::{Ground, Held, Region};
 use crate::error::{Result, Special};
 use crate::fields::View;
-use crate::geometry::{Gap, Missed};
 use crate::kernel::HalfSpace;
 use crate::memory;
 use crate::motion::CounterMotion;
@@ -141,23 +140,12 @@ impl Builder {
         Ok(own.total().saturating_mul(times).saturating_add(bytes(self.grid.cells(), periodic)))
     }
 
-    /// The constants of a contact in one process, its indenter, and what the grid misses of the waves of its shapes.
-    fn parts(mut self) -> Result<(Scene, Indenter, Missed)> {
-        self.validate()?;
-        let gaps: Vec<_> = std::mem::take(&mut self.gaps).into_iter().map(|(_, gap)| gap).collect::<Result<_>>()?;
-        let bodies = gaps.len();
-        let indenter = Indenter::new(Gap::new(gaps, &self.grid)?, bodies);
-        let (scene, _) = self.scene(bodies)?;
-        let missed = self.missed(&scene);
-        Ok((scene, indenter, missed))
-    }
-
     fn sliding(mut self, modulus: Option<Creep>) -> Result<SteadySliding> {
         self.is_covered(Special::SteadyMotion)?;
         self.settings = self.settings.with_symmetry(false).with_window(false).with_frame(Frame::Bodies);
         memory::check("a contact in steady motion", self.sliding_memory()?.into())?;
         let motion = self.counter_motion;
-        let (scene, indenter, missed) = self.parts()?;
+        let (scene, _, indenter, missed) = self.parts()?;
         let Scene { ground: Ground { grid, kernel, .. }, material, .. } = &scene;
         let periodic = kernel.periodic_axes();
         let mut ends = (0..2).filter(|&axis| !periodic[axis]);

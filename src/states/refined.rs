@@ -76,7 +76,7 @@ impl Refined {
         self.force = self.force.max(run.force());
         let end = run.time();
         let is_corner = history.next_breakpoint(start).is_some_and(|corner| corner <= end);
-        let step = RunPart { start, end, load: run.load(), is_corner };
+        let step = RunPart { start, end, load: run.fields().load(), is_corner };
         self.taken.push(step);
         let Some(contact) = &mut self.coarse else { return };
         let (is_second, jumps) = (contact.time() < start, end == start);

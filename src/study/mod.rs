@@ -136,12 +136,7 @@ impl<'a> Study<'a> {
     ) -> Study<'a> {
         let asked = |observable: Observable| matches!(observable, Observable::Approach | Observable::Force);
         Study {
-            scene: StudyScene {
-                on: Box::new(scene),
-                histories: histories.to_vec(),
-                until,
-                accuracy: STANDARD,
-            },
+            scene: StudyScene { on: Box::new(scene), histories: histories.to_vec(), until, accuracy: STANDARD },
             sides: [Side::Found; 2],
             periods: [false; 2],
             observed: Observable::ALL.map(|observable| observable.observed(asked(observable))).into(),

@@ -123,7 +123,8 @@ pub fn watch(
 
 /// Everything that a contact shows, to the last bit.
 pub fn seen(contact: &ViscoelasticContact) -> String {
-    let scalars = (contact.time(), contact.load(), contact.approach(), contact.tilt(), contact.fields().moment());
+    let scalars =
+        (contact.time(), contact.fields().load(), contact.approach(), contact.tilt(), contact.fields().moment());
     let (body, patches) =
         (contact.fields().body(0).unwrap(), contact.fields().patches().map(|patches| patches.all.len()));
     let fields = (contact.contact_area(), contact.pressure(), contact.fields().displacement());

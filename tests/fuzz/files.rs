@@ -127,7 +127,7 @@ fn history(source: &mut Source, contact: &ViscoelasticContact, scene: &Metadata,
         return Ok(Outcome::Refused);
     };
     let mut contact = contact.clone();
-    let Ok(report) = contact.step(0.5, contact.load()) else { return Ok(Outcome::Refused) };
+    let Ok(report) = contact.step(0.5, contact.fields().load()) else { return Ok(Outcome::Refused) };
     let further: Vec<f64> = names.iter().map(|_| source.anything()).collect();
     history.record(&contact, &report, &further).map_err(|error| error.to_string())?;
     let file = std::fs::read_to_string(&path).map_err(|error| error.to_string())?;

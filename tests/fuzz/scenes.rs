@@ -152,7 +152,7 @@ fn steps(source: &mut Source, fitted: bool) -> Verdict {
         let (dt, before) = (length_of_step(source), state(&contact));
         if source.chance(0.05)
             && let Ok(shape) = models::geometry(source, length)
-            && let Err(error) = contact.set_geometry(&shape)
+            && let Err(error) = contact.set_geometries(&[&shape])
         {
             unchanged(&before, &contact, &error)?;
         }

@@ -120,9 +120,9 @@ fn undetermined() -> ViscoelasticContact {
 fn contacts(t: &mut Table) {
     let over = Settings::default().with_frame(Frame::Indenter);
     let gap = |gap: f64| FnGeometry::new(move |x1, _| if x1 > 0.0 || gap == f64::INFINITY { gap } else { 0.0 });
-    t.row(pressed().set_geometry(&gap(f64::NEG_INFINITY)), Value, "the initial gap at cell [8, 0], …is -inf: it must be finite, or +inf…");
-    t.row(pressed().set_geometry(&gap(f64::INFINITY)), Value, "body 0 is the lowest…on none of the 256 cells…Grid::lengths");
-    t.row(two().set_geometry(&sphere()), Value, "geometries of the rigid bodies: 1 given, 2 needed");
+    t.row(pressed().set_geometries(&[&gap(f64::NEG_INFINITY)]), Value, "the initial gap at cell [8, 0], …is -inf: it must be finite, or +inf…");
+    t.row(pressed().set_geometries(&[&gap(f64::INFINITY)]), Value, "body 0 is the lowest…on none of the 256 cells…Grid::lengths");
+    t.row(two().set_geometries(&[&sphere()]), Value, "geometries of the rigid bodies: 1 given, 2 needed");
     t.row(pressed().fields().traction_into(&mut [0.0; 255]), Value, "traction: 255 given, 256 needed");
     t.row(EnergyBalance::new(&pressed()), Value, "displacement where an energy balance begins = … → 0, before any step");
     t.row(EnergyBalance::new(&two()), Value, "rigid bodies of an energy balance = 2 → 1");

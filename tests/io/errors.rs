@@ -85,7 +85,7 @@ fn a_bad_geometry_leaves_the_old_one() {
     let mut contact = sphere_on(grid(), maxwell(), Settings::default());
     contact.step(0.0, Load::force(0.1)).unwrap();
     let before = seen(&contact);
-    assert_eq!(contact.set_geometry(&FnGeometry::new(|x1, _| x1.sqrt())).unwrap_err().kind(), ErrorKind::Value);
+    assert_eq!(contact.set_geometries(&[&FnGeometry::new(|x1, _| x1.sqrt())]).unwrap_err().kind(), ErrorKind::Value);
     assert_eq!(seen(&contact), before);
     let mut gap = gap(contact.fields());
     assert!(gap.iter().all(|h| h.is_finite()));

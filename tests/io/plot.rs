@@ -93,7 +93,10 @@ fn tractions_diverge_about_zero() {
     .unwrap();
     contact.step(0.0, Load::approach(20.0e-6)).unwrap();
     let map = Map::of(&contact, Field::Traction).unwrap();
-    assert_eq!((map.colors, Map::of(&contact, Field::Pressure).unwrap().colors), (ColorScale::Diverging, ColorScale::Sequential));
+    assert_eq!(
+        (map.colors, Map::of(&contact, Field::Pressure).unwrap().colors),
+        (ColorScale::Diverging, ColorScale::Sequential)
+    );
     assert!(map.range[0] < 0.0 && map.range[1] > 0.0, "{:?}", map.range);
 }
 
@@ -267,7 +270,8 @@ fn animations_play_back() {
         last = Some(map.draw().unwrap());
         contact.step(0.2, Load::force(0.3)).unwrap();
     }
-    let other = Map::draw_row(&[Map::of(&contact, Field::Pressure).unwrap(), Map::of(&contact, Field::Gap).unwrap()]).unwrap();
+    let other =
+        Map::draw_row(&[Map::of(&contact, Field::Pressure).unwrap(), Map::of(&contact, Field::Gap).unwrap()]).unwrap();
     let refused = animation.record_picture(&other).unwrap_err();
     assert!(matches!(refused, Error::CountOutOfRange { field: "width of a frame", .. }));
     assert_eq!(animation.frames(), 4);

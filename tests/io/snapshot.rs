@@ -10,7 +10,7 @@ use viscocontact::prelude::*;
 fn operate(contact: &mut ViscoelasticContact, [kind, a, b, c]: [f64; 4]) -> bool {
     let (dt, force) = (0.2 * a, 0.2 + b);
     let eccentric = || Load::eccentric_force(force, [1.0e-4 * (c - 0.5), 0.0]);
-    match (contact.settings().frame(), (8.0 * kind) as usize) {
+    match (contact.fields().settings().frame(), (8.0 * kind) as usize) {
         (_, 0) => contact.step(0.0, Load::force(force)).is_ok(),
         (_, 1) => contact.step(dt, eccentric()).is_ok(),
         (_, 2) => contact.step(dt, Load::approach(2.0e-5 * b)).is_ok(),
@@ -21,7 +21,7 @@ fn operate(contact: &mut ViscoelasticContact, [kind, a, b, c]: [f64; 4]) -> bool
         }
         (_, 4) => {
             let moved = Shifted::new(Sphere::new(8.0e-3 + 4.0e-3 * a).unwrap(), [0.0, 2.0e-4 * (c - 0.5)]).unwrap();
-            contact.set_geometry(&moved).is_ok()
+            contact.set_geometries(&[&moved]).is_ok()
         }
         (_, 5) => contact.step(dt, Load::spring(3.0e4, 4.0e-5 * b)).is_ok(),
         _ => contact.step(dt, Load::force(force)).is_ok(),
@@ -62,7 +62,7 @@ fn disturb(contact: &mut ViscoelasticContact, path: &Path, [kind, a, b, c]: [f64
             (0..3).for_each(|k| _ = operate(contact, [(kind * 7.0 + f64::from(k) * 0.37).fract(), b, c, a]));
             contact.resume(path).unwrap();
         }
-        7 if contact.settings().frame() == Frame::Indenter => assert_eq!(
+        7 if contact.fields().settings().frame() == Frame::Indenter => assert_eq!(
             contact.step_over([2, 0], dt, Load::force(too_much)).unwrap_err().kind(),
             ErrorKind::Value,
             "the indenter is elsewhere"

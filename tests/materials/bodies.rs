@@ -128,5 +128,5 @@ fn series_span_forty_decades() {
     let body = PowerLaw::new(1.0e-6, 1.0, 0.3).unwrap();
     assert!(body.series(1e-10..=1e30, 0.1).unwrap().report().max_misfit() <= 0.1);
     let exact = Zener::with_time(1.0e6, 1.0e6, 1.0).unwrap();
-    assert!(exact.series(1e-90..=1e90, 1e-4).unwrap().report().is_exact());
+    assert!(exact.series(1e-90..=1e90, 1e-4).unwrap().report().samples().is_empty());
 }

@@ -11,13 +11,10 @@ const RANGE: f64 = 20.0e-9;
 fn attractions() -> Vec<Box<dyn Attraction>> {
     vec![
         Box::new(ExponentialAttraction::new(WORK, RANGE).unwrap()),
-        Box::new(ExponentialAttraction::of_traction(WORK, WORK / RANGE).unwrap()),
         Box::new(VanDerWaals::new(WORK, RANGE).unwrap()),
-        Box::new(VanDerWaals::of_traction(WORK, WORK / RANGE).unwrap()),
         Box::new(LinearSoftening::new(WORK, RANGE).unwrap()),
-        Box::new(LinearSoftening::of_traction(WORK, WORK / RANGE).unwrap()),
         Box::new(Dugdale::new(WORK, RANGE).unwrap()),
-        Box::new(Dugdale::of_traction(WORK, WORK / RANGE).unwrap().with_width(0.02).unwrap()),
+        Box::new(Dugdale::new(WORK, RANGE).unwrap().with_width(0.02).unwrap()),
         Box::new(std::sync::Arc::new(Dugdale::new(WORK, RANGE).unwrap().with_width(2.0).unwrap())),
     ]
 }
@@ -108,7 +105,7 @@ fn a_contact_takes_attractions_only() {
 fn scales_out_of_range_are_refused() {
     for (work, range) in [(0.0, 1.0), (-1.0, 1.0), (1.0, 0.0), (1.0, f64::NAN), (f64::INFINITY, 1.0), (1e300, 1e-300)] {
         assert!(matches!(ExponentialAttraction::new(work, range), Err(Error::OutOfRange { .. })), "{work} {range}");
-        assert!(matches!(Dugdale::of_traction(range, work), Err(Error::OutOfRange { .. })), "{work} {range}");
+        assert!(matches!(Dugdale::new(work, range), Err(Error::OutOfRange { .. })), "{work} {range}");
     }
     for width in [0.0, 2.1, f64::NAN] {
         assert!(matches!(Dugdale::new(1.0, 1.0).unwrap().with_width(width), Err(Error::OutOfRange { .. })));

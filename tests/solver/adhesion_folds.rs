@@ -59,7 +59,7 @@ impl Pair {
         let [rough, fine] = &mut self.contacts;
         rough.save(checkpoint).unwrap();
         fine.resume(checkpoint).unwrap();
-        fine.step(0.0, rough.load()).unwrap();
+        fine.step(0.0, rough.fields().load()).unwrap();
         let [rough, fine] = [rough, fine].map(|contact| traction(contact.fields()));
         rough.iter().zip(&fine).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / self.greatest
     }

@@ -119,7 +119,7 @@ pub(super) fn check(name: &str, contact: &ViscoelasticContact, law: &dyn Attract
     }
     let force = traction.iter().sum::<f64>() * contact.grid().cell_area();
     assert!((force - contact.force()).abs() < 1e-9 * (greatest * SIDE * SIDE), "{name}: {force} {}", contact.force());
-    if let Load::Spring { stiffness, drive, .. } = contact.load() {
+    if let Load::Spring { stiffness, drive, .. } = contact.fields().load() {
         let (balance, scale) =
             (stiffness * (drive - contact.approach()), traction.iter().map(|q| q.abs()).sum::<f64>());
         let rounding = 1e-14 * stiffness * (drive.abs() + contact.approach().abs());

@@ -363,7 +363,7 @@ fn what_is_not_shared_is_refused_by_name() {
         not_covered([
             (contact.fields().patches().err(), RANKS),
             (contact.fields().stress().err(), RANKS),
-            (contact.set_geometry(&Sphere::new(1.0).unwrap()).err(), RANKS),
+            (contact.set_geometries(&[&Sphere::new(1.0).unwrap()]).err(), RANKS),
             (contact.fields().mesh_error().err(), RANKS),
             // the load would have to unfold the fields
             (contact.step(0.1, Load::eccentric_force(1.0, [1.0e-4, 0.0])).err(), RANKS),

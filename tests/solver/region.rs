@@ -65,7 +65,7 @@ fn sparing_cells_changes_nothing_where_symmetry_is_lost() {
         let mut step = |what: &str, dt: f64, load: Load, geometry: Option<&dyn Geometry>| {
             for contact in &mut contacts {
                 if let Some(geometry) = geometry {
-                    contact.set_geometry(geometry).unwrap();
+                    contact.set_geometries(&[geometry]).unwrap();
                     assert!(contact.within_step(contact.time() - 0.01).is_ok(), "{what}: the last step is still known");
                 }
                 contact.step(dt, load).unwrap();

@@ -161,11 +161,11 @@ fn a_state_within_a_given_step_is_a_shorter_step() {
             let between = |a: f64, b: f64| a + share * (b - a);
             let loads: Vec<Load> = (0..contact.fields().bodies())
                 .map(|body| {
-                    if let Load::Approach { approach, .. } = contact.load() {
+                    if let Load::Approach { approach, .. } = contact.fields().load() {
                         return Load::approach(between(start.approach(), approach));
                     }
                     let [before, after] = [&start, &contact].map(|contact| contact.fields().body(body).unwrap().force);
-                    match (start.load().tilt(), contact.load().tilt()) {
+                    match (start.fields().load().tilt(), contact.fields().load().tilt()) {
                         (
                             [Tilt::Free { at: a1 }, Tilt::Free { at: a2 }],
                             [Tilt::Free { at: b1 }, Tilt::Free { at: b2 }],

@@ -202,7 +202,7 @@ behaviours! {
                     assert_eq!(report_of.time_error, report.time_error);
                     let force = if let Load::Force { normal, .. } = load().at(contact.time()) { normal } else { f64::NAN };
                     assert!((contact.force() - force).abs() <= 1e-9, "{} {force}", contact.force());
-                    ends += usize::from(sample.is_end_of_step());
+                    ends += usize::from(report_of.time == report.time);
                     asked.extend(sample.is_asked_for().then_some(report_of.time));
                 }
             }

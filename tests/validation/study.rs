@@ -312,8 +312,7 @@ fn errors_of_histories_come_out_of_studies() {
             }
             Ok(Load::force(0.5 * (0.2 + (2.0 * t).sin().abs())))
         });
-        let result =
-            study(&sphere, &body, &history, until).fields_at(&[1.0, 2.0]).accuracy(5e-2).run();
+        let result = study(&sphere, &body, &history, until).fields_at(&[1.0, 2.0]).accuracy(5e-2).run();
         if is_met.load(std::sync::atomic::Ordering::Relaxed) {
             seen += 1;
             let failed = match &result {

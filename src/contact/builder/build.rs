@@ -39,15 +39,10 @@ impl Builder {
     /// ([`Error::NotCovered`](crate::Error::NotCovered)).
     pub fn build(mut self) -> Result<ViscoelasticContact> {
         let Some(group) = &self.ranks else {
-            self.validate()?;
-            let gaps: Vec<_> = std::mem::take(&mut self.gaps).into_iter().map(|(_, gap)| gap).collect::<Result<_>>()?;
-            let bodies = gaps.len();
-            let indenter = Indenter::new(Gap::new(gaps, &self.grid)?, bodies);
-            let (scene, history) = self.scene(bodies)?;
+            let (scene, history, indenter, missed) = self.parts()?;
             let folded = if self.settings.symmetry { indenter.even_axes(&self.grid) } else { [false; 2] };
             let region = scene.ground.first_region(folded, &indenter, windowed(&scene, &history));
             scene.check_memory(&history, &region, 0)?;
-            let missed = self.missed(&scene);
             return Ok(assemble(scene, &history, Arc::new(indenter), region, missed));
         };
         let rows = self.agreed_rows(group)?;
@@ -63,8 +58,20 @@ impl Builder {
         })
     }
 
+    /// The constants of a contact in one process, its history, its indenter, and what the grid misses of the waves of
+    /// its shapes.
+    pub(crate) fn parts(&mut self) -> Result<(Scene, History, Indenter, Missed)> {
+        self.validate()?;
+        let gaps: Vec<_> = std::mem::take(&mut self.gaps).into_iter().map(|(_, gap)| gap).collect::<Result<_>>()?;
+        let bodies = gaps.len();
+        let indenter = Indenter::new(Gap::new(gaps, &self.grid)?, bodies);
+        let (scene, history) = self.scene(bodies)?;
+        let missed = self.missed(&scene);
+        Ok((scene, history, indenter, missed))
+    }
+
     /// What the grid misses of the waves of the shapes.
-    pub(crate) fn missed(&self, scene: &Scene) -> Missed {
+    fn missed(&self, scene: &Scene) -> Missed {
         Missed::of(&self.waves, &self.grid, scene.ground.kernel.periodic_axes())
     }
 

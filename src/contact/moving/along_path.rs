@@ -18,8 +18,6 @@ pub struct TravelReport {
     pub step: StepReport,
     /// Position of the shape at the end of the step \[m\].
     pub position: [f64; 2],
-    /// Position of the shape at the start of the step \[m\].
-    pub from: [f64; 2],
     /// Lateral force that moves the shape \[N\], see
     /// [`Fields::slope_force`](crate::fields::Fields::slope_force).
     pub lateral_force: [f64; 2],
@@ -46,14 +44,14 @@ impl ViscoelasticContact {
         count_within("rigid bodies of a step along a path", self.fields().bodies(), self.fields().bodies() == 1, only)?;
         let loads = [load];
         let requested = self.request_next(dt, &loads)?;
-        let [from, position] = [travel.position(self.time())?, travel.position(self.time() + dt)?];
+        let position = travel.position(self.time() + dt)?;
         let shape = travel.shape_at(self.time() + dt)?;
         let gap = Gap::new(vec![travel.gap(&shape, self.grid())?], self.grid())?;
         let before = self.load_and_motion();
         let step = self.take(Step { indenter: Arc::new(Indenter::new(gap, 1)), ..requested })?;
         let lateral_force = self.fields().slope_force(&shape);
         let power = if dt > 0.0 { self.work_along(before) / dt } else { 0.0 };
-        Ok(TravelReport { step, position, from, lateral_force, power })
+        Ok(TravelReport { step, position, lateral_force, power })
     }
 
     /// Work of the lateral motion in the last step \[J\]: the work of the pressure, Σ p Δu, less the work of force and

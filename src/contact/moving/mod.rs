@@ -13,20 +13,12 @@ use crate::load::Load;
 use wake::Wake;
 
 impl ViscoelasticContact {
-    /// Replaces the indenter, moved or changed, between two steps; the bodies keep their deformation,
-    /// and touch the new one from the next step on.
+    /// Replaces the indenter, moved or changed, between two steps, by a geometry for each rigid body; the bodies keep
+    /// their deformation, and touch the new one from the next step on.
     ///
     /// # Errors
-    /// If a gap is NaN or −∞, or none is finite, or there are several rigid bodies, or the new gap breaks a symmetry
-    /// and there is no memory for the mirror images. The contact then keeps the old indenter.
-    pub fn set_geometry(&mut self, geometry: &dyn Geometry) -> Result<()> {
-        self.set_geometries(&[geometry])
-    }
-
-    /// [`ViscoelasticContact::set_geometry`] with a geometry for each rigid body.
-    ///
-    /// # Errors
-    /// As [`ViscoelasticContact::set_geometry`], or if there is not one geometry per body.
+    /// If a gap is NaN or −∞, or none is finite, or there is not one geometry per body, or the new gap breaks a
+    /// symmetry and there is no memory for the mirror images. The contact then keeps the old indenter.
     pub fn set_geometries(&mut self, geometries: &[&dyn Geometry]) -> Result<()> {
         self.covers(coverage::OTHER_GEOMETRY)?;
         exact_length("geometries of the rigid bodies", geometries.len(), self.scene.ground.bodies)?;

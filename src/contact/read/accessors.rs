@@ -3,7 +3,6 @@
 use crate::Grid;
 use crate::contact::{Settings, ViscoelasticContact};
 use crate::error::{Result, coverage};
-use crate::load::Load;
 use crate::rheology::{Material, TemperatureHistory};
 
 impl ViscoelasticContact {
@@ -23,8 +22,7 @@ impl ViscoelasticContact {
         self.scene.temperature.as_ref()
     }
 
-    /// The settings of the contact.
-    pub fn settings(&self) -> &Settings {
+    pub(crate) fn settings(&self) -> &Settings {
         &self.scene.ground.settings
     }
 
@@ -32,11 +30,6 @@ impl ViscoelasticContact {
     /// [`Builder::times`](crate::contact::Builder::times); [`Material::fit_reports`] gives the error of the fit.
     pub fn material(&self) -> &Material {
         &self.scene.material
-    }
-
-    /// The load of the last step, on the first body.
-    pub fn load(&self) -> Load {
-        self.computation.state.held.loads[0]
     }
 
     /// The grid of every field.

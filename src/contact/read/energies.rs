@@ -245,7 +245,7 @@ impl EnergyBalance {
         (before, contact): (Option<&ViscoelasticContact>, &ViscoelasticContact),
         halvings: u32,
     ) -> Result<bool> {
-        let (end, load) = (&contact.computation.state, contact.load());
+        let (end, load) = (&contact.computation.state, contact.fields().load());
         let start = before.map_or(&end.previous, |before| &before.computation.state.held.current);
         let mut part = match before {
             Some(before) => before.clone(),
@@ -270,7 +270,7 @@ impl EnergyBalance {
     /// what is released belongs to the load there. So a given motion is over before the jump, and what the load
     /// leaves free moves under the load of the end.
     fn ends_of_jump(&self, contact: &ViscoelasticContact, pushed: &[f64; 3]) -> [[f64; 3]; 2] {
-        let load = contact.load();
+        let load = contact.fields().load();
         let is_given = |k: usize| match (k, load) {
             (0, load) => matches!(load, Load::Approach { .. }),
             (k, load) => matches!(load.tilt()[k - 1], Tilt::Fixed(_)),

@@ -141,7 +141,7 @@ impl FitReport {
     }
 
     /// Whether the series is exact and nothing was fitted.
-    pub fn is_exact(&self) -> bool {
+    pub(in crate::rheology) fn is_exact(&self) -> bool {
         self.samples.is_empty()
     }
 

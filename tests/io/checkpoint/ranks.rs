@@ -127,7 +127,7 @@ fn checkpoints_that_ranks_cannot_resume_are_refused_by_name() {
     // an indenter that has moved
     let mut contact = sphere().unwrap().build().unwrap();
     contact.step(0.0, Load::force(0.1)).unwrap();
-    contact.set_geometry(&Shifted::new(Sphere::new(10.0e-3).unwrap(), [1.0e-4, 0.0]).unwrap()).unwrap();
+    contact.set_geometries(&[&Shifted::new(Sphere::new(10.0e-3).unwrap(), [1.0e-4, 0.0]).unwrap()]).unwrap();
     contact.save(&path).unwrap();
     assert!(what(refused(Some(2), &path)).starts_with("computed region"));
     sphere().unwrap().build().unwrap().resume(&path).unwrap();

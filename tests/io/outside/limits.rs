@@ -18,9 +18,9 @@ fn later_shapes_and_tilts_are_seen() {
     let mut contact = builder_of(&wave(0.5e-3), grid, elastic()).kernel(kernel).build().unwrap();
     let warned = |contact: &mut ViscoelasticContact| contact.step(0.0, Load::force(0.1)).unwrap().figures.periods;
     assert_eq!(warned(&mut contact), None);
-    contact.set_geometry(&wave(0.4e-3)).unwrap();
+    contact.set_geometries(&[&wave(0.4e-3)]).unwrap();
     assert_eq!(warned(&mut contact), Some(2.5));
-    contact.set_geometry(&wave(0.25e-3)).unwrap();
+    contact.set_geometries(&[&wave(0.25e-3)]).unwrap();
     assert_eq!(warned(&mut contact), None);
 
     let grid = Grid::square(48, 3.0e-3).unwrap();
