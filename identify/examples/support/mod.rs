@@ -8,6 +8,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use viscocontact::load::LoadHistory;
 use viscocontact::rheology::Material;
+use viscocontact::run::Contact;
 use viscocontact::states::StatesContact;
 use viscocontact_identify::Experiment;
 
