@@ -1,6 +1,7 @@
 //! A contact of one material on elastic states.
 
 use viscocontact::contact as ct;
+use viscocontact::run::Contact as _;
 use viscocontact::states as st;
 
 use crate::held::Held;
