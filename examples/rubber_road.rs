@@ -19,7 +19,7 @@ use viscocontact::contact::Warnings;
 use viscocontact::plot::{COLORS, Chart, Color, Legend, Map, Quantity, Scale, Style, measure};
 use viscocontact::prelude::*;
 use viscocontact::rheology::{TimeTemperature, library};
-use viscocontact::sliding::{SlidingSweep, SlidingTable, SweptState};
+use viscocontact::sliding::{SlidingReport, SlidingSweep, SlidingTable, SweptState};
 
 /// A rubber slides over a road, at speeds over eight decades.
 #[derive(Parser)]
@@ -100,7 +100,8 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let transforms: usize = table.states().iter().map(|state| state.report.transforms).sum();
     let states = table.states().len();
     println!("{states} states, {transforms} pairs of transforms, {:.2} s", began.elapsed().as_secs_f64());
-    table.save(args.output.join("sweep"))?;
+    table.write_csv(args.output.join("sweep.csv"))?;
+    table.chart("coefficient of friction", SlidingReport::friction).save(args.output.join("sweep.png"))?;
     draw(args, &grid, &road, &table)?;
 
     let mut maps = Vec::new();

@@ -35,6 +35,7 @@ mod stepper;
 
 pub use crate::error::StepError;
 pub use crate::fields::BodyState;
+pub use crate::fields::report::{Estimated, StepReport};
 pub use builder::Builder;
 
 pub use builder::memory::Memory;
@@ -43,7 +44,6 @@ pub use moving::along_path::TravelReport;
 #[cfg(feature = "energies")]
 pub use read::energies::{Energies, EnergyBalance};
 pub(crate) use read::limits::Limits;
-pub use read::report::{Estimated, StepReport};
 pub use state::snapshot::Snapshot;
 #[cfg(feature = "adhesion")]
 pub use step::attraction::PassReport;

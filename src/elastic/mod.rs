@@ -14,7 +14,6 @@ use std::sync::atomic::AtomicBool;
 
 pub use builder::ElasticBuilder;
 
-use crate::contact::StepReport;
 use crate::equilibrium::constraints::{acceptable, below_full_contact, converged, find_free_motions, validate_loads};
 use crate::equilibrium::guess::initial_guess;
 use crate::equilibrium::indenter::even_axes;
@@ -26,6 +25,7 @@ use crate::equilibrium::window::placement::{outgrown, region_for};
 use crate::equilibrium::{Figures, Ground, Held, Indenter, Region, Request, RigidBodies, Trial, Window};
 use crate::equilibrium::{modulus_of_no_solid, windowed};
 use crate::error::{Result, exact_length, finite};
+use crate::fields::report::StepReport;
 use crate::fields::{About, Fields, Surface, View};
 use crate::geometry::Missed;
 use crate::load::Load;

@@ -12,6 +12,7 @@ mod local_rows;
 pub(crate) mod mesh_error;
 #[cfg(not(feature = "observe"))]
 mod no_observe;
+pub(crate) mod report;
 mod shared_area;
 pub(crate) mod view;
 

@@ -1,8 +1,5 @@
 //! Charts of sweeps of steady motions.
 
-use std::path::Path;
-
-use crate::error::Result;
 use crate::load::Load;
 use crate::plot::{COLORS, Chart, Legend, Quantity, Scale, Style};
 use crate::rounded::rounded;
@@ -27,23 +24,5 @@ impl SlidingTable {
             chart.add(label, COLORS[k % COLORS.len()], Style::LineAndDots, curve.iter().map(point).collect());
         }
         chart
-    }
-
-    /// Writes the table ([`SlidingTable::write_csv`]) and a picture of the friction over the speed: `path` with the
-    /// endings `csv` and `png`, which take the place of one of these endings alone. Existing files are replaced.
-    ///
-    /// # Errors
-    /// If a file cannot be written, or there is nothing to draw.
-    pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
-        let path = path.as_ref();
-        let is_ending = path.extension().is_some_and(|ending| ending == "csv" || ending == "png");
-        let stem = if is_ending { path.with_extension("") } else { path.to_owned() };
-        let with = |ending: &str| {
-            let mut name = stem.clone().into_os_string();
-            name.push(ending);
-            name
-        };
-        self.write_csv(with(".csv"))?;
-        self.chart("coefficient of friction", SlidingReport::friction).save(with(".png"))
     }
 }

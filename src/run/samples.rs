@@ -40,7 +40,8 @@ impl<C: Contact> Sample<'_, C> {
     }
 
     /// The report of the step from the start of the run's step to this time, with the work that the sample took; its
-    /// [`StepReport::time_error`] is the error of the whole step. At the end of the step, where a sample takes no work, it is the report of the step.
+    /// [`StepReport::time_error`] is the error of the whole step. At the end of the step, where a sample takes no work,
+    /// it is the report of the step.
     pub fn report(&self) -> &StepReport {
         &self.report
     }

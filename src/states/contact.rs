@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::elastic::other_tilt;
-use crate::contact::{Figures, Limits, StepReport, Warnings};
+use crate::contact::{Limits, StepReport};
 use crate::elastic::ElasticContact;
 use crate::error::{Result, non_negative};
 use crate::hereditary::{ExponentialRule, Interpolant};
@@ -16,7 +16,8 @@ use crate::states::elastic::state_under;
 use crate::states::levels::{Demand, Levels, Wanted};
 
 /// A contact of one material on the [`ElasticStates`] of its surface, advanced step by step like a
-/// [`ViscoelasticContact`](crate::ViscoelasticContact), by the same time rule.
+/// [`ViscoelasticContact`](crate::ViscoelasticContact), by the same time rule. Its time, force, approach, tilt
+/// and contact area are those of [`Contact`].
 ///
 /// A step costs about N (N_τ + 3) multiplications for N groups of levels and N_τ relaxation times: 7 ns for each
 /// group of one. Every step adds a group at most; groups merge within an error ([`StatesContact::with_merge_error`]),
@@ -228,27 +229,6 @@ impl StatesContact {
             self.undisturbed_until = reduced;
         }
         Ok(self.report(dt, load))
-    }
-
-    /// The report of a step of length `dt` to this state.
-    pub(super) fn report(&self, dt: f64, load: Load) -> StepReport {
-        let limits = &self.scene.limits;
-        let (mut warnings, figures) = self.states.outside(self.level(), self.depth());
-        if self.groups() > 0 {
-            let reduced = self
-                .scene
-                .temperature
-                .as_ref()
-                .and_then(|history| history.reduced_time(self.time - dt, self.time).ok());
-            warnings |= limits.warnings(self.reduced_time - self.undisturbed_until, reduced.unwrap_or(dt));
-        }
-        warnings.set(Warnings::MODULUS, limits.modulus.is_some());
-        StepReport {
-            contact_cells: self.states.state_at(self.level()).map_or(0, |state| state.cells),
-            warnings,
-            figures: Figures { modulus: limits.modulus, ..figures },
-            ..crate::run::without_work(self, dt, load)
-        }
     }
 
     /// Adds the elastic state at a level to the states of this contact.

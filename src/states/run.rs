@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
-use crate::contact::StepReport;
+use crate::contact::{Figures, StepReport, Warnings};
 use crate::error::{Error, Result};
 use crate::load::{Load, LoadHistory};
 use crate::rheology::TemperatureHistory;
 use crate::run::control::Control;
 use crate::run::doubled::{SavedRun, lead};
 use crate::run::progress::Progress;
-use crate::run::{Contact, Stepping};
+use crate::run::{Contact, Stepping, without_work};
 use crate::solver::RigidMotion;
 use crate::states::contact::StatesContact;
 use crate::states::control::OnLevels;
@@ -60,7 +60,23 @@ impl Contact for StatesContact {
     }
 
     fn report(&self, dt: f64, load: Load) -> StepReport {
-        StatesContact::report(self, dt, load)
+        let limits = &self.scene.limits;
+        let (mut warnings, figures) = self.states.outside(self.level(), self.depth());
+        if self.groups() > 0 {
+            let reduced = self
+                .scene
+                .temperature
+                .as_ref()
+                .and_then(|history| history.reduced_time(self.time - dt, self.time).ok());
+            warnings |= limits.warnings(self.reduced_time - self.undisturbed_until, reduced.unwrap_or(dt));
+        }
+        warnings.set(Warnings::MODULUS, limits.modulus.is_some());
+        StepReport {
+            contact_cells: self.states.state_at(self.level()).map_or(0, |state| state.cells),
+            warnings,
+            figures: Figures { modulus: limits.modulus, ..figures },
+            ..without_work(self, dt, load)
+        }
     }
 
     fn columns(&self) -> Vec<(&'static str, f64)> {

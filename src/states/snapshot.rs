@@ -6,9 +6,9 @@ use crate::error::{Result, of_other_contact};
 use crate::states::contact::StatesContact;
 
 impl StatesContact {
-    /// Becomes what a clone of this contact is, without allocating where there is room, to go back to it or to keep
-    /// what this contact is in a clone made before: the steps that follow are the same as they were, bitwise, with exact
-    /// states to the tolerance of the solver.
+    /// Becomes what a clone of this contact is, without allocating where there is room: to go back to it, or to keep in
+    /// a clone made before what the contact is now. The steps that follow are the same as they were, bitwise, with
+    /// exact states to the tolerance of the solver.
     ///
     /// # Errors
     /// If they are no clones of one contact.

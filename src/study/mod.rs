@@ -146,8 +146,8 @@ impl<'a> Study<'a> {
         }
     }
 
-    /// The accuracy: the error relative to the maximum value of the run, from 1e-6 to 0.1. 1e-2 is for a first look, 1e-3,
-    /// the default, for design, and 1e-4 for reference solutions.
+    /// The accuracy: the error relative to the maximum value of the run, from 1e-6 to 0.1. 1e-2 is for a first look,
+    /// 1e-3, the default, for design, and 1e-4 for reference solutions.
     pub fn accuracy(mut self, accuracy: f64) -> Study<'a> {
         self.scene.accuracy = accuracy;
         self

@@ -29,7 +29,6 @@ fn on_states() -> StatesContact {
 /// A kind of contact: a new one, and its runs.
 struct Kind<C: Contact + 'static> {
     new: fn() -> C,
-    follow: fn(C, Box<dyn LoadHistory>, Stepping, f64) -> Run<'static, C>,
     resume: fn(&mut C, &std::path::Path) -> viscocontact::Result<()>,
     /// The approach at which the body touches.
     touch: f64,
@@ -37,7 +36,7 @@ struct Kind<C: Contact + 'static> {
 
 impl<C: Contact + Send> Kind<C> {
     fn run(&self, load: impl LoadHistory + 'static, stepping: Stepping, until: f64) -> Run<'static, C> {
-        (self.follow)((self.new)(), Box::new(load), stepping, until)
+        (self.new)().into_follow(load, stepping, until)
     }
 }
 
@@ -64,18 +63,8 @@ macro_rules! behaviours {
             fn check<$generic: Contact + Send>($kind: &Kind<$generic>) $check
             let grid = Grid::square(24, 4.0e-3).unwrap();
             let touch = Sphere::new(RADIUS).unwrap().initial_gap(0.5 * grid.spacing()[0], 0.5 * grid.spacing()[1]);
-            check(&Kind {
-                new: in_space,
-                follow: |contact, load, stepping, until| contact.into_follow(load, stepping, until),
-                resume: |contact, path| contact.resume(path),
-                touch,
-            });
-            check(&Kind {
-                new: on_states,
-                follow: |contact, load, stepping, until| contact.into_follow(load, stepping, until),
-                resume: |contact, path| contact.resume(path),
-                touch: 0.0,
-            });
+            check(&Kind { new: in_space, resume: |contact, path| contact.resume(path), touch });
+            check(&Kind { new: on_states, resume: |contact, path| contact.resume(path), touch: 0.0 });
         }
     )*};
 }
@@ -86,7 +75,7 @@ behaviours! {
             let mut contact = (kind.new)();
             contact.step(0.0, Load::force(0.5)).unwrap();
             contact.step(1.0, Load::force(0.5)).unwrap();
-            let mut run = (kind.follow)(contact, Box::new(hold(0.5)), Stepping::fixed(dt), 2.0);
+            let mut run = contact.into_follow(hold(0.5), Stepping::fixed(dt), 2.0);
             // a first step of length zero may apply the load
             let error = (0..2).find_map(|_| run.next_step().err()).unwrap();
             assert!(matches!(error, Error::OutOfRange { field: "fixed step", .. }), "{error}");
@@ -182,7 +171,7 @@ behaviours! {
         // another load than the last step's is a jump, and the end is the end
         let mut contact = (kind.new)();
         contact.step(0.35, Load::force(0.2)).unwrap();
-        let mut run = (kind.follow)(contact, Box::new(hold(0.5)), Stepping::fixed(0.25), 0.5);
+        let mut run = contact.into_follow(hold(0.5), Stepping::fixed(0.25), 0.5);
         let lengths: Vec<f64> = std::iter::from_fn(|| run.next_step().unwrap()).map(|report| report.dt).collect();
         assert_eq!((lengths.len(), lengths[0], run.next_step()), (2, 0.0, Ok(None)));
     }
@@ -253,7 +242,7 @@ behaviours! {
             run.samples().map(|sample| { let sample = sample.unwrap(); (sample.report().time.to_bits(), sample.is_asked_for()) }).collect()
         };
         let path = folder.join("run");
-        let whole = |contact: C| (kind.follow)(contact, Box::new(load()), Stepping::adaptive(1e-3), 0.9).sample_at(Times::every(0.05)).unwrap();
+        let whole = |contact: C| contact.into_follow(load(), Stepping::adaptive(1e-3), 0.9).sample_at(Times::every(0.05)).unwrap();
         let (mut run, mut all, mut cuts) = (whole((kind.new)()).autosave_to(&path, Duration::ZERO), Vec::new(), Vec::new());
         let mut taken = 0;
         while run.next_step().unwrap().is_some() {
@@ -383,7 +372,7 @@ behaviours! {
                 drop(run);
                 let mut contact = (kind.new)();
                 (kind.resume)(&mut contact, &path).unwrap();
-                let run = (kind.follow)(contact, Box::new(load()), stepping, 2.0);
+                let run = contact.into_follow(load(), stepping, 2.0);
                 assert_eq!(run.progress().steps as usize, taken);
                 assert_eq!(steps(run), whole[taken..], "{stepping:?} after {taken} steps");
             }

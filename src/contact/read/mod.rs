@@ -4,4 +4,3 @@ pub(in crate::contact) mod accessors;
 #[cfg(feature = "energies")]
 pub(in crate::contact) mod energies;
 pub(crate) mod limits;
-pub(in crate::contact) mod report;

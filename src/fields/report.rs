@@ -8,8 +8,8 @@ use crate::load::Load;
 use crate::rounded::{TIME, rounded};
 use crate::solver::Solution;
 
-/// The outcome and the cost of one step; of an [`ElasticContact`](crate::elastic::ElasticContact), which has no time, as
-/// of a jump at time 0.
+/// The outcome and the cost of one step; of an [`ElasticContact`](crate::elastic::ElasticContact), which has no time,
+/// as of a jump at time 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
