@@ -145,6 +145,7 @@ fn shifts_within_their_errors(is_vertical: bool) {
         let master = shifted(300.0 + 5.0 * reference as f64, isotherms)
             .unwrap_or_else(|error| panic!("seed {seed}, noise {deviation:.3}: {error}"));
         let verticals_found = master.vertical_factors();
+        assert!(is_vertical || verticals_found.iter().all(|(_, factor)| *factor == 1.0));
         for (k, ((_, found), (_, error))) in master.shift_factors().into_iter().zip(master.shift_errors()).enumerate() {
             let apart = (found / (factors[k] / factors[reference])).log10().abs();
             let of_values = (verticals_found[k].1 / (verticals[k] / verticals[reference])).ln().abs();
