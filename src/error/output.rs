@@ -17,10 +17,11 @@ use std::sync::Arc;
 ///     .geometry(&Sphere::new(10.0e-3)?)
 ///     .material(Material::incompressible(Elastic::new(1.0e6)?))
 ///     .build()?;
-/// match CsvHistory::create("no/such/folder/history.csv", &Metadata::new("Ball on rubber"), &contact, &[], Earlier::Refuse) {
-///     Err(Error::Output(error)) if error.kind() == ErrorKind::NotFound => println!("create {:?} first", error.path().parent()),
-///     other => panic!("{other:?}"),
-/// }
+/// let (path, metadata) = ("no/such/folder/history.csv", Metadata::new("Ball on rubber"));
+/// let error = CsvHistory::create(path, &metadata, &contact, &[], Earlier::Refuse).unwrap_err();
+/// assert_eq!(error.io_kind(), Some(ErrorKind::NotFound));
+/// let Error::Output(error) = error else { panic!("{error}") };
+/// println!("create {:?} first", error.path().parent());
 /// # Ok::<(), Error>(())
 /// ```
 #[derive(Debug, Clone)]

@@ -22,7 +22,7 @@ use crate::{Grid, ViscoelasticContact};
 ///
 /// proptest!(ProptestConfig::with_cases(8), |(scenario in scenarios())| {
 ///     let contact = scenario.run(Settings::default())?;
-///     let Load::Force { normal, .. } = contact.load() else { unreachable!() };
+///     let Load::Force { normal, .. } = contact.fields().load() else { unreachable!() };
 ///     prop_assert!((contact.force() - normal).abs() <= 1e-12 * normal);
 /// });
 /// ```
