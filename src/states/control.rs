@@ -28,11 +28,15 @@ struct Aims {
     /// Two halves err by a third of their difference to the whole, as where the order is two: the curve between states
     /// has kinks in its curvature.
     of_halves: f64,
-    /// Levels that were swept in a step, by the edge or by slip, are resolved by its length alone: their error does not
-    /// add up over the steps, but over the taps that come back to them, and counts so much, chosen on 300 random runs
-    /// that tap and part; less where forces are given throughout.
+    /// Levels that the edge swept in a step are resolved by its length alone: their error does not add up over the
+    /// steps, but over the taps that come back to them, and counts so much, chosen on 300 random runs that tap and
+    /// part; less where forces are given throughout.
     swept: f64,
     swept_by_force: f64,
+    /// So do those that slip: each is off as it begins to, and back as those below it are.
+    slipping: f64,
+    /// What lasts along the surface adds up over all steps since the last corner: over their number, it counts so much.
+    lasting: f64,
     /// What hardly counts, in tolerances: the overshoot of a step that ends where bodies touch, and the merging of
     /// levels.
     slight: f64,
@@ -45,6 +49,8 @@ const AIMS: Aims = Aims {
     of_halves: 1.0 / 3.0,
     swept: 0.2,
     swept_by_force: 0.05,
+    slipping: 0.05,
+    lasting: 0.3,
     slight: 0.01,
 };
 
@@ -203,16 +209,14 @@ impl Judge<StatesContact> for OnLevels {
         if whole.level() > 0.0 || halves.level() > 0.0 {
             see([0, 1].map(|k| ended[0][k] - ended[1][k]), scales);
         }
-        let off = whole.levels.shear_distance(&halves.levels, &contact.levels, AIMS.swept);
+        let off = whole.levels.shear_distance(&halves.levels, &contact.levels, AIMS.slipping);
         if let (Some(off), Some(shear)) = (off, &halves.levels.shear) {
             // early in a run, what acts along the surface is small beside what will act
             let along = SMALL * record.greatest_along[0] / halves.reached_along();
             let [along, pressed] =
                 [along, greatest[1] / reached[1]].map(|ahead| if ahead.is_finite() { ahead.max(1.0) } else { 1.0 });
             let (pressed, [far, most, done]) = (along.max(pressed), shear.maxima.map(|most| SMALL * most));
-            // half of the aim: beside an error of its own it has that of the normal load
-            let scales = [shear.displacement().abs().max(far * along), shear.force.abs().max(most * pressed)]
-                .map(|scale| 0.5 * scale);
+            let scales = [shear.displacement().abs().max(far * along), shear.force.abs().max(most * pressed)];
             let asked = |time: f64| contact.along(time, time - now, None).ok().flatten();
             let stuck = halves.levels.stuck_again(&halves.states, [&contact.levels, &middle.levels], span, asked);
             see([off[0], off[2] + stuck / AIMS.of_halves], scales);
@@ -226,12 +230,12 @@ impl Judge<StatesContact> for OnLevels {
             // the loss is of no certain order where edges move in the step: the error of the halves is at most their
             // difference from the whole
             see([(off[3] + in_doubt) / AIMS.of_halves, off[4]], [shear.lost.max(done), done / SMALL]);
-            // levels that stick keep what a step has moved them by
+            // levels that stick keep what a step has moved them by, and a spring its force
             let time = end - record.corner;
             let lasting = |demand| halves.levels.lasting(&halves.states, demand, time / half);
-            let lasting = asked(end).map_or(0.0, lasting);
-            let steps = AIMS.aim * lasting * (time / (end - now)).min(f64::from(PARTS_OF_RUN));
-            see([steps * off[1], 0.0], scales);
+            let lasting = AIMS.lasting * asked(end).map_or(0.0, lasting);
+            let steps = lasting * (time / (end - now)).min(f64::from(PARTS_OF_RUN));
+            see([steps * off[1], steps * off[2]], scales);
             halves.levels.extrapolate_losses([contact, &*whole].map(|contact| &contact.levels), AIMS.of_halves);
         }
         // what steps like this one add since the last corner, and nothing brings back, may be as large as the

@@ -97,37 +97,37 @@ impl Levels {
         shear.stick = stick.checked_sub(1).map_or(0.0, |k| groups[k].top);
     }
 
-    /// How far apart two outcomes of one step are along the surface: ∫ |δU| dδ, the most that their displacements can
-    /// ever differ by; the displacements; the forces; what slip has dissipated; and the work. In the first, levels that
-    /// began to slip after the state `before`, or that the edge passed, count as `swept`; it is no less than the second.
+    /// How far apart two outcomes of one step from the state `before` are along the surface: the greatest |∫ δU dδ| over
+    /// neighbouring levels, the most that their displacements can ever differ by; the displacements; the forces; what slip
+    /// has dissipated; and the work. Levels that slip in the first or that the edge passed count as `swept`; the first is
+    /// no less than the second.
     pub(in crate::states) fn shear_distance(&self, other: &Levels, before: &Levels, swept: f64) -> Option<[f64; 5]> {
-        let (one, two, from) = (self.shear.as_ref()?, other.shear.as_ref()?, before.shear.as_ref()?);
+        let (one, two) = (self.shear.as_ref()?, other.shear.as_ref()?);
         let (own, others) = (self.history.sheared()?, other.history.sheared()?);
-        // up to where it stuck before; after a turn all sticks, and slips from the edge again. A zone that sticks and
-        // grows without a turn is not told apart from that: there all that slips counts as swept
         let stick = one.stick.min(two.stick);
-        let edge = if stick < from.stick { from.stick } else { before.level };
         let [least, most] = [f64::min, f64::max].map(|of| [self.level, other.level].into_iter().fold(before.level, of));
         let passed = least * (1.0 + ROUNDING)..=most * (1.0 + ROUNDING);
-        let (mut far, mut k, mut lower) = (0.0, 0, 0.0);
+        // the sum below a level, and the least and the greatest so far, of levels that stick and of those that were swept
+        let (mut sums, mut k, mut lower) = ([[0.0f64; 3]; 2], 0, 0.0);
         for (group, now) in other.groups.iter().zip(others) {
             loop {
                 let inside = self.groups.get(k).filter(|own| own.top < group.top);
                 let Group { top, motions, .. } = *inside.unwrap_or(group);
-                let is_swept = stick < top && top <= edge || passed.contains(&top);
-                let counts = if is_swept { swept } else { 1.0 };
-                far += counts * (now - own.get(k).copied().unwrap_or(0.0)).abs() * (motions.depth - lower);
-                lower = motions.depth;
+                let [sum, low, high] = &mut sums[usize::from(top > stick || passed.contains(&top))];
+                *sum += (now - own.get(k).copied().unwrap_or(0.0)) * (motions.depth - lower);
+                (*low, *high, lower) = (low.min(*sum), high.max(*sum), motions.depth);
                 if inside.is_none() {
                     break;
                 }
                 k += 1;
             }
         }
+        let [held, slips] = sums.map(|[_, low, high]| high - low);
         let numbers = |shear: &Shear| [shear.displacement(), shear.force, shear.lost, shear.work];
-        let (own, others) = (numbers(one), numbers(two));
-        let [motion, force, lost, work] = std::array::from_fn(|k| (own[k] - others[k]).abs());
-        Some([motion.max(far + (one.slid - two.slid).abs()), motion, force, lost, work])
+        let (ends, others) = (numbers(one), numbers(two));
+        let [motion, force, lost, work] = std::array::from_fn(|k| (ends[k] - others[k]).abs());
+        let far = held + swept * slips + (one.slid - two.slid).abs();
+        Some([far.max(motion), motion, force, lost, work])
     }
 
     /// By how much force a contact that slides in both halves of a step, `others` being the states before it and
