@@ -184,7 +184,7 @@ fn plot_master(
     chart.scale = Scale::LogX;
     let published = omega.iter().map(|&w| (w, exact(w).im / exact(w).re)).collect();
     chart.add("published", COLORS[0], Style::Line, published);
-    let fit = omega.iter().step_by(4).map(|&w| (w, -body.spectrum().complex_compliance(w).arg().tan())).collect();
+    let fit = omega.iter().step_by(4).map(|&w| (w, body.spectrum().complex_modulus(w).arg().tan())).collect();
     chart.add("from the master curve", COLORS[1], Style::Dots, fit);
     Ok(chart.save(args.output.join("loss_factor.png"))?)
 }

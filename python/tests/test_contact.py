@@ -151,6 +151,7 @@ def test_wrong_arrays_are_refused_by_name():
 
 ERRORS = {
     "a value": (ValueError, "sphere radius = -1.0 is not allowed: it must be", lambda: vc.Shape.sphere(-1.0)),
+    "a traction": (ValueError, "max_traction = 0.0 is not allowed", lambda: vc.Attraction.dugdale(0.05, max_traction=0.0)),
     "a load": (ValueError, "force", lambda: ball().step(0.0, vc.Load.force(math.nan))),
     "the edge": (ValueError, "enlarge the grid", lambda: ball().step(0.0, vc.Load.force(1e3))),
     "a missing file": (FileNotFoundError, "no_such.sdf", lambda: vc.HeightMap.read("no_such.sdf")),

@@ -8,11 +8,11 @@ use crate::plot::quantity::measure;
 use crate::plot::{COLORS, Chart, Color, ColorScale, Legend, Map, Quantity, Style};
 
 impl Map {
-    /// A field of a contact, titled with its time. The contact is outlined but on [`Field::Pressure`], whose cells out of
-    /// contact are white; [`Map::outline`] outlines it there, too. The colours of pressure and gap begin at zero; those
-    /// of [`Field::Traction`], the net traction between the bodies, are red where they press, blue where they
-    /// [attract](crate::adhesion) each other and white at zero. Cells whose gap is infinite are grey in both. A line
-    /// contact, whose map is a strip, is better shown by [`Chart::profile`].
+    /// A field of a contact, titled with its time. The contact is outlined but on [`Field::Pressure`], whose cells
+    /// out of contact are white; [`Map::outline`] outlines it there, too. The colours of pressure and gap begin at
+    /// zero; those of [`Field::Traction`], the net traction between the bodies, are red where they press, blue where
+    /// they [attract](crate::adhesion) each other and white at zero. Cells whose gap is infinite are grey in maps of
+    /// the gap and of the traction. A line contact, whose map is a strip, is better shown by [`Chart::profile`].
     ///
     /// # Errors
     /// If a finite value exceeds 1e100 in magnitude.

@@ -331,12 +331,6 @@ pub trait Contact: Clone + Debug + Send + Sync + 'static {
     fn lead(&mut self, stepping: Stepping, until: f64) -> (Progress, Box<dyn Control<Self>>);
 }
 
-/// [`Contact::report`] of a contact of one's own.
-#[cfg(feature = "states")]
-pub(crate) fn without_work<C: Contact>(contact: &C, dt: f64, load: Load) -> StepReport {
-    doubled::report(contact, dt, load)
-}
-
 /// A value that a run borrows as `B` or owns as `O`.
 #[derive(Debug)]
 pub(crate) enum OwnedOrBorrowed<B, O> {

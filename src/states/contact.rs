@@ -16,8 +16,8 @@ use crate::states::elastic::state_under;
 use crate::states::levels::{Demand, Levels, Wanted};
 
 /// A contact of one material on the [`ElasticStates`] of its surface, advanced step by step like a
-/// [`ViscoelasticContact`](crate::ViscoelasticContact), by the same time rule. Its time, force, approach, tilt
-/// and contact area are those of [`Contact`].
+/// [`ViscoelasticContact`](crate::ViscoelasticContact), by the same time rule. Its time, force, approach, tilt,
+/// contact area and whether it is apart are those of [`Contact`].
 ///
 /// A step costs about N (N_τ + 3) multiplications for N groups of levels and N_τ relaxation times: 7 ns for each
 /// group of one. Every step adds a group at most; groups merge within an error ([`StatesContact::with_merge_error`]),

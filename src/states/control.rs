@@ -33,9 +33,11 @@ struct Aims {
     /// part; less where forces are given throughout.
     swept: f64,
     swept_by_force: f64,
-    /// So do those that slip: each is off as it begins to, and back as those below it are.
+    /// Along the surface, levels that slip or that the edge passed count so much: a level is off in the step in which it
+    /// begins to slip, and right again once those below it slip.
     slipping: f64,
-    /// What lasts along the surface adds up over all steps since the last corner: over their number, it counts so much.
+    /// What lasts along the surface adds up over all steps since the last corner: the difference of one times their
+    /// number counts so much.
     lasting: f64,
     /// What hardly counts, in tolerances: the overshoot of a step that ends where bodies touch, and the merging of
     /// levels.
@@ -209,7 +211,7 @@ impl Judge<StatesContact> for OnLevels {
         if whole.level() > 0.0 || halves.level() > 0.0 {
             see([0, 1].map(|k| ended[0][k] - ended[1][k]), scales);
         }
-        let off = whole.levels.shear_distance(&halves.levels, &contact.levels, AIMS.slipping);
+        let off = whole.levels.shear_distance(&halves.levels, contact.level(), AIMS.slipping);
         if let (Some(off), Some(shear)) = (off, &halves.levels.shear) {
             // early in a run, what acts along the surface is small beside what will act
             let along = SMALL * record.greatest_along[0] / halves.reached_along();
@@ -219,7 +221,10 @@ impl Judge<StatesContact> for OnLevels {
             let scales = [shear.displacement().abs().max(far * along), shear.force.abs().max(most * pressed)];
             let asked = |time: f64| contact.along(time, time - now, None).ok().flatten();
             let stuck = halves.levels.stuck_again(&halves.states, [&contact.levels, &middle.levels], span, asked);
-            see([off[0], off[2] + stuck / AIMS.of_halves], scales);
+            // where slip ends within the step, the halves miss by about as much as the whole when it does
+            let slips = |contact: &StatesContact| contact.stick_level() < contact.level();
+            let order = if slips(contact) && !slips(halves) { WITHOUT_ORDER / AIMS.of_halves } else { 1.0 };
+            see([order * off[0], order * off[2] + stuck / AIMS.of_halves], scales);
             // where bodies part, the halves agree although both pass over the slip: all that the last part loses is in
             // doubt
             let held = if middle.level() > 0.0 { &middle.levels } else { &contact.levels };

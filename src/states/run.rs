@@ -9,7 +9,7 @@ use crate::rheology::TemperatureHistory;
 use crate::run::control::Control;
 use crate::run::doubled::{SavedRun, lead};
 use crate::run::progress::Progress;
-use crate::run::{Contact, Stepping, without_work};
+use crate::run::{Contact, Stepping, doubled};
 use crate::solver::RigidMotion;
 use crate::states::contact::StatesContact;
 use crate::states::control::OnLevels;
@@ -75,7 +75,7 @@ impl Contact for StatesContact {
             contact_cells: self.states.state_at(self.level()).map_or(0, |state| state.cells),
             warnings,
             figures: Figures { modulus: limits.modulus, ..figures },
-            ..without_work(self, dt, load)
+            ..doubled::report(self, dt, load)
         }
     }
 

@@ -1,4 +1,4 @@
-//! Contacts on elastic states as they were, to come back to.
+//! Contacts on elastic states as they were or are, to come back to.
 
 use std::sync::Arc;
 

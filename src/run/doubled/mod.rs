@@ -234,7 +234,7 @@ pub(crate) fn lead<C: Contact, J: Judge<C>>(
 }
 
 /// The report of a step without work.
-pub(super) fn report<C: Contact>(contact: &C, dt: f64, load: Load) -> StepReport {
+pub(crate) fn report<C: Contact>(contact: &C, dt: f64, load: Load) -> StepReport {
     StepReport {
         time: contact.time(),
         force: contact.force(),

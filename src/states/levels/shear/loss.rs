@@ -97,17 +97,17 @@ impl Levels {
         shear.stick = stick.checked_sub(1).map_or(0.0, |k| groups[k].top);
     }
 
-    /// How far apart two outcomes of one step from the state `before` are along the surface: the greatest |∫ δU dδ| over
-    /// neighbouring levels, the most that their displacements can ever differ by; the displacements; the forces; what slip
-    /// has dissipated; and the work. Levels that slip in the first or that the edge passed count as `swept`; the first is
-    /// no less than the second.
-    pub(in crate::states) fn shear_distance(&self, other: &Levels, before: &Levels, swept: f64) -> Option<[f64; 5]> {
+    /// How far apart two outcomes of one step are along the surface: the greatest |∫ δU dδ| over neighbouring
+    /// levels, the most that their displacements can ever differ by; the displacements; the forces; what slip has
+    /// dissipated; and the work. In the first, levels above those that stick in both, and those between the `edge`
+    /// before the step and the edges after it, count as `slipping`; it is no less than the second.
+    pub(in crate::states) fn shear_distance(&self, other: &Levels, edge: f64, slipping: f64) -> Option<[f64; 5]> {
         let (one, two) = (self.shear.as_ref()?, other.shear.as_ref()?);
         let (own, others) = (self.history.sheared()?, other.history.sheared()?);
         let stick = one.stick.min(two.stick);
-        let [least, most] = [f64::min, f64::max].map(|of| [self.level, other.level].into_iter().fold(before.level, of));
+        let [least, most] = [f64::min, f64::max].map(|of| [self.level, other.level].into_iter().fold(edge, of));
         let passed = least * (1.0 + ROUNDING)..=most * (1.0 + ROUNDING);
-        // the sum below a level, and the least and the greatest so far, of levels that stick and of those that were swept
+        // the sum below a level, and the least and the greatest so far, of levels that stick and of the others
         let (mut sums, mut k, mut lower) = ([[0.0f64; 3]; 2], 0, 0.0);
         for (group, now) in other.groups.iter().zip(others) {
             loop {
@@ -126,7 +126,7 @@ impl Levels {
         let numbers = |shear: &Shear| [shear.displacement(), shear.force, shear.lost, shear.work];
         let (ends, others) = (numbers(one), numbers(two));
         let [motion, force, lost, work] = std::array::from_fn(|k| (ends[k] - others[k]).abs());
-        let far = held + swept * slips + (one.slid - two.slid).abs();
+        let far = held + slipping * slips + (one.slid - two.slid).abs();
         Some([far.max(motion), motion, force, lost, work])
     }
 
