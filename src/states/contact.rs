@@ -267,14 +267,6 @@ impl StatesContact {
         &self.states
     }
 
-    pub(super) fn time(&self) -> f64 {
-        self.time
-    }
-
-    pub(super) fn force(&self) -> f64 {
-        self.levels.force
-    }
-
     /// Level c(t): the elastic contact at this level has the same area \[m²\]; 0 without contact.
     pub fn level(&self) -> f64 {
         self.levels.level

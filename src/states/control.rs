@@ -10,6 +10,7 @@ use std::path::Path;
 use crate::contact::StepReport;
 use crate::error::Result;
 use crate::load::{Load, LoadHistory};
+use crate::run::Contact;
 #[cfg(feature = "checkpoint")]
 use crate::run::doubled::SavedRun;
 use crate::run::doubled::judge::{Judge, MAX_GROWTH, Record, SMALL, Tries, WITHOUT_ORDER};
@@ -236,10 +237,8 @@ impl Judge<StatesContact> for OnLevels {
             // difference from the whole
             see([(off[3] + in_doubt) / AIMS.of_halves, off[4]], [shear.lost.max(done), done / SMALL]);
             // levels that stick keep what a step has moved them by, and a spring its force
-            let time = end - record.corner;
-            let lasting = |demand| halves.levels.lasting(&halves.states, demand, time / half);
-            let lasting = AIMS.lasting * asked(end).map_or(0.0, lasting);
-            let steps = lasting * (time / (end - now)).min(f64::from(PARTS_OF_RUN));
+            let lasting = |demand| lasting(AIMS.lasting, halves, demand, span, end - record.corner);
+            let steps = asked(end).map_or(0.0, lasting);
             see([steps * off[1], steps * off[2]], scales);
             halves.levels.extrapolate_losses([contact, &*whole].map(|contact| &contact.levels), AIMS.of_halves);
         }
@@ -249,9 +248,8 @@ impl Judge<StatesContact> for OnLevels {
         let (time, off) = if acts { (*loaded, ended[0][0] - ended[1][0]) } else { (*until, of_surface[0]) };
         let by_spring = matches!(demand, Demand::Depth { give, .. } if give > 0.0);
         if acts && by_spring || !acts && halves.levels.has_dashpot() {
-            let time = time.min(end - record.corner);
-            let steps = (time / (end - now)).min(f64::from(PARTS_OF_RUN));
-            see([AIMS.aim * halves.levels.lasting(&halves.states, demand, time / half) * steps * off, 0.0], greatest);
+            let steps = lasting(AIMS.aim, halves, demand, span, time.min(end - record.corner));
+            see([steps * off, 0.0], greatest);
         }
         let parts = report.force == 0.0 && contact.level() > 0.0;
         Ok(if record.next == 0.0 || record.touches || parts { WITHOUT_ORDER } else { AIMS.of_halves } * worst)
@@ -268,6 +266,13 @@ impl Judge<StatesContact> for OnLevels {
     fn save(contact: &StatesContact, run: SavedRun<OnLevels>, path: &Path) -> Result<()> {
         contact.save_with(path, Some(run))
     }
+}
+
+/// What is left of a difference that each step like the one over a span makes for a `time`, over one such difference, as
+/// much as it counts.
+fn lasting(counts: f64, halves: &StatesContact, demand: Demand, Span { now, end }: Span, time: f64) -> f64 {
+    let steps = (time / (end - now)).min(f64::from(PARTS_OF_RUN));
+    counts * halves.levels.lasting(&halves.states, demand, time / (0.5 * (end - now))) * steps
 }
 
 /// The load at a time, or just before it where it jumps.

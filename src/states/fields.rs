@@ -3,6 +3,7 @@
 use crate::error::{Result, within};
 use crate::fields::KeptFields;
 use crate::load::Load;
+use crate::run::Contact;
 use crate::states::contact::StatesContact;
 use crate::states::contacts::{Contacts, SolvedContact, Superposition};
 use crate::states::profile::Profile;

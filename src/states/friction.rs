@@ -9,6 +9,7 @@ use crate::kernel::HalfSpace;
 use crate::load::along::LateralWork;
 use crate::load::{Load, LoadHistory};
 use crate::rheology::Material;
+use crate::run::Contact;
 use crate::states::contact::StatesContact;
 use crate::states::coulomb::Friction;
 use crate::states::levels::{Demand, Shear};

@@ -7,9 +7,9 @@ use crate::error::{Error, Result};
 use crate::load::{Load, LoadHistory};
 use crate::rheology::TemperatureHistory;
 use crate::run::control::Control;
-use crate::run::doubled::{SavedRun, lead};
+use crate::run::doubled::{SavedRun, lead, report};
 use crate::run::progress::Progress;
-use crate::run::{Contact, Stepping, doubled};
+use crate::run::{Contact, Stepping};
 use crate::solver::RigidMotion;
 use crate::states::contact::StatesContact;
 use crate::states::control::OnLevels;
@@ -26,11 +26,11 @@ impl Contact for StatesContact {
     }
 
     fn time(&self) -> f64 {
-        StatesContact::time(self)
+        self.time
     }
 
     fn force(&self) -> f64 {
-        StatesContact::force(self)
+        self.levels.force
     }
 
     fn approach(&self) -> f64 {
@@ -75,7 +75,7 @@ impl Contact for StatesContact {
             contact_cells: self.states.state_at(self.level()).map_or(0, |state| state.cells),
             warnings,
             figures: Figures { modulus: limits.modulus, ..figures },
-            ..doubled::report(self, dt, load)
+            ..report(self, dt, load)
         }
     }
 

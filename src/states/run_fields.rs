@@ -7,6 +7,7 @@ use crate::contact::{Scene, ViscoelasticContact};
 use crate::equilibrium::Ground;
 use crate::error::{Result, count_within};
 use crate::load::{Load, LoadHistory};
+use crate::run::Contact;
 use crate::run::Run;
 use crate::run::control::{Exact, FieldReport};
 use crate::run::fields::{FieldFinder, FieldRequest, MOST_FIELDS, Prepared};

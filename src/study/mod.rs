@@ -240,9 +240,9 @@ impl<'a> Study<'a> {
     /// Runs the study.
     ///
     /// # Errors
-    /// If the accuracy is not in [1e-6, 0.1], the end of the run or a given length is not finite and positive, a time of a field is not in the run, no
-    /// cells are allowed, there is not one history for each body, no domain holds the contact, the surfaces attract
-    /// each other and the domain is not given, or a run of the first mesh fails;
+    /// If the accuracy is not in \[1e-6, 0.1\], the end of the run or a given length is not finite and positive, a time
+    /// of a field is not in the run, no cells are allowed, there is not one history for each body, no domain holds the
+    /// contact, the surfaces attract each other and the domain is not given, or a run of the first mesh fails;
     /// [`Error::Cancelled`](crate::Error::Cancelled) where it was cancelled. A failure on a finer mesh ends the study
     /// with what it has ([`Ending::Failed`]).
     pub fn run(self) -> Result<StudyResult> {

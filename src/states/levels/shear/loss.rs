@@ -97,7 +97,7 @@ impl Levels {
         shear.stick = stick.checked_sub(1).map_or(0.0, |k| groups[k].top);
     }
 
-    /// How far apart two outcomes of one step are along the surface: the greatest |∫ δU dδ| over neighbouring
+    /// How far apart two outcomes of one step are along the surface: the maximum |∫ δU dδ| over neighbouring
     /// levels, the most that their displacements can ever differ by; the displacements; the forces; what slip has
     /// dissipated; and the work. In the first, levels above those that stick in both, and those between the `edge`
     /// before the step and the edges after it, count as `slipping`; it is no less than the second.
@@ -107,7 +107,7 @@ impl Levels {
         let stick = one.stick.min(two.stick);
         let [least, most] = [f64::min, f64::max].map(|of| [self.level, other.level].into_iter().fold(edge, of));
         let passed = least * (1.0 + ROUNDING)..=most * (1.0 + ROUNDING);
-        // the sum below a level, and the least and the greatest so far, of levels that stick and of the others
+        // the sum below a level, its minimum and its maximum so far, of levels that stick and of the others
         let (mut sums, mut k, mut lower) = ([[0.0f64; 3]; 2], 0, 0.0);
         for (group, now) in other.groups.iter().zip(others) {
             loop {
