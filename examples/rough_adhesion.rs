@@ -64,7 +64,7 @@ fn main() {
 
 fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     fs::create_dir_all(&args.output)?;
-    let (cells, steps) = if args.quick { (124, 30) } else { (args.cells, 180) };
+    let (cells, steps) = if args.quick { (96, 16) } else { (args.cells, 180) };
     let grid = Grid::square(cells, args.length)?;
     let spec = RoughSpec::new(args.length, 0.25 * args.length, Roughness::RmsHeight(args.height)).with_seed(args.seed);
     let surface = Rough::new(&grid, spec)?;

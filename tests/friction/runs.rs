@@ -153,12 +153,17 @@ fn sheared_runs_err_by_what_was_asked() {
         let work = contact.lateral_work();
         [contact.lateral_displacement(), contact.lateral_force(), work.slip, work.work]
     };
-    err_by_what_was_asked(8, Scene::new, seen);
+    // eight in a row whose references are cheap: those of the seeds 7 and 8 take more than the others together
+    err_by_what_was_asked([8, 137], Scene::new, seen);
 }
 
-/// `FRICTION_RUNS` scenes against runs of a tenth and a twenty-fifth of their tolerance with 200 and 400 stops.
-pub fn err_by_what_was_asked<C: Contact>(count: u64, draw: fn(u64) -> Option<Scene<C>>, seen: fn(&C) -> Seen) {
-    let (count, first) = (from_environment("FRICTION_RUNS", count), from_environment("FRICTION_SEED", 0));
+/// `FRICTION_RUNS` scenes after the seed `FRICTION_SEED` against runs of a tenth and a twenty-fifth of their tolerance with 200 and 400 stops.
+pub fn err_by_what_was_asked<C: Contact>(
+    [count, first]: [u64; 2],
+    draw: fn(u64) -> Option<Scene<C>>,
+    seen: fn(&C) -> Seen,
+) {
+    let (count, first) = (from_environment("FRICTION_RUNS", count), from_environment("FRICTION_SEED", first));
     let (mut ratios, mut taken): ([Ratios; 4], Ratios) = Default::default();
     let (mut failed, mut vague, mut seed) = (Vec::new(), 0, first);
     while ratios[0].count() + failed.len() + vague < count as usize {

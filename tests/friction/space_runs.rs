@@ -79,9 +79,9 @@ fn size([a, b, c]: [f64; 3]) -> f64 {
 
 #[test]
 fn errors_are_what_was_asked_for() {
-    let (scenes, mut worst, mut over) = (from_environment("SHEARED_RUNS", 8), [0.0_f64; 4], 0);
+    let (scenes, mut worst, mut over) = (from_environment("SHEARED_RUNS", 4), [0.0_f64; 4], 0);
     for seed in 0..scenes {
-        let tolerance = [1e-2, 3e-3][(seed / 4 % 2) as usize];
+        let tolerance = [1e-2, 3e-3][((seed + seed / 4) % 2) as usize];
         let ((found, steps), (exact, _)) = (course(seed, tolerance), course(seed, 0.04 * tolerance));
         assert!(found.len() == exact.len() && found.len() == 16, "{}", found.len());
         let (mut off, mut largest) = ([0.0_f64; 4], [0.0_f64; 4]);
@@ -159,7 +159,7 @@ fn any_loads_err_by_what_was_asked() {
         let ([m1, m2, _], [q1, q2, _], work) = (contact.motion(), contact.force(), contact.lateral_work());
         [m1 + 0.5 * m2, q1 + 0.5 * q2, work.slip, work.work]
     };
-    err_by_what_was_asked(4, random, seen);
+    err_by_what_was_asked([4, 0], random, seen);
 }
 
 #[test]
@@ -204,7 +204,7 @@ fn runs_follow_jumps_and_say_when_bodies_slide() {
 #[test]
 fn adaptive_runs_of_creeping_bodies_say_that_they_slide() {
     let maxwell = || GeneralizedMaxwell::new(0.0, &[(1.0e6, 1.0)]).unwrap();
-    for (nu, creeps, tolerance) in [(0.5, false, 1e-2), (0.5, true, 1e-2), (0.5, false, 1e-3), (0.3, false, 1e-2)] {
+    for (nu, creeps, tolerance) in [(0.5, false, 3e-3), (0.5, true, 1e-2), (0.3, false, 1e-2)] {
         let zener = || Zener::with_time(1.0e6, 1.0e6, 1.0).unwrap();
         let material = match (nu, creeps) {
             (_, true) => Material::incompressible(maxwell()),

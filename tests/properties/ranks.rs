@@ -51,7 +51,7 @@ fn chosen_scenes_are_the_same_on_all_ranks() {
 
 #[test]
 fn random_scenes_are_the_same_on_all_ranks() {
-    let (scenes, first) = (from_environment("RANKS_SCENES", 16), 1000 * from_environment("RANKS_SEED", 1));
+    let (scenes, first) = (from_environment("RANKS_SCENES", 10), 1000 * from_environment("RANKS_SEED", 1));
     let (mut pressed, mut steps, mut failed) = (0, 0, 0);
     for seed in first..first + scenes {
         let scene = AnyScene::new(seed);

@@ -133,7 +133,7 @@ impl Curve {
 /// steps and within them. Every great jump is reported, with the energy that it loses; at its very moment a run to 1e-3 may err by more.
 #[test]
 fn adaptive_runs_follow_short_steps() {
-    let [runs, seed, first] = [("ADHESION_RUNS", 14), ("ADHESION_SEED", 1), ("ADHESION_FIRST", 0)]
+    let [runs, seed, first] = [("ADHESION_RUNS", 8), ("ADHESION_SEED", 1), ("ADHESION_FIRST", 0)]
         .map(|(name, default)| from_environment(name, default));
     let (mut ratios, mut jumps, mut equivalents) = ([const { Vec::new() }; 2], 0, [0.0; 2]);
     for number in first..first + runs {

@@ -87,7 +87,7 @@ fn every_step_beside_a_jump_ends() {
 /// hardly anything is left they do not. Among them bodies that are held apart, and let go.
 #[test]
 fn jumps_are_what_stays_in_parts() {
-    let scenes = from_environment("ADHESION_JUMPS", 40);
+    let scenes = from_environment("ADHESION_JUMPS", 24);
     let (mut flagged, mut real, mut missed, mut wrong, mut steps, mut looks) = (0, 0, 0, 0, 0, 0);
     for number in 0..scenes {
         let mut draws = Draws::new(7000 * from_environment("ADHESION_SEED", 1) + number);

@@ -264,7 +264,7 @@ pub(super) fn errors(
 #[test]
 fn states_are_those_of_their_problem_whatever_came_before() {
     check_bessel_functions();
-    let (chains, seed) = (from_environment("SLIDING_CHAINS", 40), from_environment("SLIDING_SEED", 1));
+    let (chains, seed) = (from_environment("SLIDING_CHAINS", 16), from_environment("SLIDING_SEED", 1));
     let only = from_environment("SLIDING_ONLY", u64::MAX);
     let mut all: [Ratios; 6] = Default::default();
     let (mut failures, mut refused, mut infeasible, mut strong) = (Vec::new(), [0; 2], 0, [0; 2]);

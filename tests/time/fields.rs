@@ -178,7 +178,7 @@ fn population(seed: u64, scenes: u64, accuracy: f64) -> [Population; 2] {
 /// FIELD_SCENES=300 FIELD_SEED=1 are the figures of the documents.
 #[test]
 fn fields_of_runs_are_as_exact_as_asked() {
-    let scenes = from_environment("FIELD_SCENES", 8);
+    let scenes = from_environment("FIELD_SCENES", 5);
     for (accuracy, most) in [(1e-2, 10.0), (1e-3, 30.0)] {
         let all = population(from_environment("FIELD_SEED", 1), scenes, accuracy);
         for (some, creep) in all.iter().zip(["up to 100-fold", "up to 1000-fold"]) {

@@ -93,7 +93,7 @@ pub(super) struct Promise {
 
 const HONEST: Promise = Promise {
     features: &[Features::ANY],
-    chosen: [("HONEST_SCENES", 36), ("HONEST_SEED", 1), ("HONEST_FIRST", 0), ("HONEST_STEPS", MOST_GIVEN_STEPS)],
+    chosen: [("HONEST_SCENES", 24), ("HONEST_SEED", 1), ("HONEST_FIRST", 0), ("HONEST_STEPS", MOST_GIVEN_STEPS)],
     most_problems: MOST_PROBLEMS,
     tolerances: 4,
     share: 0.99,
@@ -113,7 +113,7 @@ fn errors_are_honest_on_random_scenes() {
 #[test]
 fn errors_under_springs_are_honest() {
     let [_, seed, first, steps] = HONEST.chosen;
-    Promise { features: &[Features::SPRING], chosen: [("HONEST_SPRINGS", 15), seed, first, steps], ..HONEST }.check();
+    Promise { features: &[Features::SPRING], chosen: [("HONEST_SPRINGS", 10), seed, first, steps], ..HONEST }.check();
 }
 
 /// What surfaces attract each other: at 1e-2 every error of approach or force is at most twice what was asked; at 1e-3 95 % are, and all are below six

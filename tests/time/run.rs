@@ -383,7 +383,7 @@ behaviours! {
     crossings_within_a_step_are_not_missed: kind, C => {
         // all crossings of a dense look at the steps are at their ends, but for pairs within a 64th of a step
         let (mut found, mut missed, mut close) = (0, 0, 0);
-        for number in 0..from_environment("EVENT_SCENES", 12) {
+        for number in 0..from_environment("EVENT_SCENES", 8) {
             let mut draws = Draws::new(number + 57_000_001);
             let (mean, period) = (draws.between(0.2, 0.4), draws.power_of_ten(-0.7, 0.5));
             let amplitude = mean * draws.between(0.1, 0.9);

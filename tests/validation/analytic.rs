@@ -49,7 +49,7 @@ fn pressures_carry_the_force() {
         GrowingSphere::step(RADIUS, &prony, 1.0).unwrap(),
         GrowingSphere::new(RADIUS, &prony, ramp).unwrap(),
     ];
-    for (scene, times) in scenes.iter().zip([[0.0, 0.3, 5.0], [0.0, 0.3, 100.0], [2.0, 2.5, 50.0]]) {
+    for (scene, times) in scenes.iter().zip([[0.3, 5.0], [0.0, 100.0], [2.0, 50.0]]) {
         for t in times {
             let a = scene.contact_radius(t);
             // r = a sin θ smooths the rim, and Simpson's rule takes few of the pressures, which are integrals of integrals;
