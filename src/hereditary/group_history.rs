@@ -80,11 +80,12 @@ impl Past {
         let [displacements, changes, bends, stresses @ ..] = &mut columns[..] else { return };
         let [of_change, of_bend] = rule.committed.ratios;
         twists.resize(now.len(), 0.0);
-        for (k, &now) in now.iter().enumerate() {
-            let change = now - displacements[k];
-            let bend = change - of_change * changes[k];
-            twists[k] = bend - of_bend * bends[k];
-            (displacements[k], changes[k], bends[k]) = (now, change, bend);
+        let differences = changes.iter_mut().zip(bends.iter_mut()).zip(twists.iter_mut());
+        for ((&now, displacement), ((change, bend), twist)) in now.iter().zip(displacements).zip(differences) {
+            let moved = now - *displacement;
+            let bent = moved - of_change * *change;
+            *twist = bent - of_bend * *bend;
+            (*displacement, *change, *bend) = (now, moved, bent);
         }
         for (column, &[decay, one, two, three]) in stresses.iter_mut().zip(&rule.committed.branches) {
             combine(column, decay, [one, two, three], [changes, bends, twists]);

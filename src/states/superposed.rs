@@ -38,15 +38,15 @@ impl ElasticStates {
     pub(super) fn work(&self, from: f64, to: f64) -> f64 {
         let [low, high] = [from, to].map(|level| self.states.partition_point(|state| state.level <= level));
         let inner = self.states.get(low..high).unwrap_or_default().iter().map(|state| state.level);
-        let (mut sum, mut bottom) = (0.0, from);
+        let (mut sum, mut bottom, mut lower) = (0.0, from, self.depth(from));
         for top in inner.chain(std::iter::once(to)).filter(|top| *top > from) {
             // below the first state it is a power, too
-            let low = if bottom > 0.0 { bottom } else { 0.5 * top };
-            let exponent = (self.depth(top) / self.depth(low)).ln() / (top / low).ln();
-            let product = top * self.depth(top) - bottom * self.depth(bottom);
+            let below = if bottom > 0.0 { [bottom, lower] } else { [0.5 * top, self.depth(0.5 * top)] };
+            let depth = self.depth(top);
+            let exponent = (depth / below[1]).ln() / (top / below[0]).ln();
             // levels as near as rounding
-            sum += if exponent.is_finite() { product / (1.0 + exponent) } else { 0.0 };
-            bottom = top;
+            sum += if exponent.is_finite() { (top * depth - bottom * lower) / (1.0 + exponent) } else { 0.0 };
+            (bottom, lower) = (top, depth);
         }
         sum
     }

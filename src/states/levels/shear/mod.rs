@@ -250,10 +250,12 @@ impl Levels {
         let compliance = history.rule().compliance();
         let slid = wish.weights[1] * shear.slid;
         let (mut needed, mut size) = (wish.sum - slid, wish.sum.abs() + slid.abs());
-        for (k, traction) in shear.tractions.iter_mut().enumerate() {
-            let stuck = history.sheared().filter(|_| k < stick).map(|now| now[k]);
-            *traction = stuck.map_or(0.0, |now| (now - shear.trial[k]) / compliance);
-            let has = wish.of(widths(groups, k), *traction, stuck.unwrap_or(shear.trial[k]));
+        let Some(now) = history.sheared() else { return 0.0 };
+        let moved = now.iter().zip(&shear.trial).zip(&mut shear.tractions);
+        for (k, ((&now, &free), traction)) in moved.enumerate() {
+            let stuck = if k < stick { now } else { free };
+            *traction = if k < stick { (now - free) / compliance } else { 0.0 };
+            let has = wish.of(widths(groups, k), *traction, stuck);
             (needed, size) = (needed - has, size + has.abs());
         }
         if needed.abs() <= ROUNDED * size { 0.0 } else { needed }
