@@ -5,7 +5,7 @@
 //! far, since little is missing to the limit.
 
 use crate::friction::kernel::TangentialKernel;
-use crate::friction::newton::{Outcome, Work};
+use crate::friction::newton::{Convergence, Work};
 use crate::friction::problem::{Problem, Solution, take_motion};
 use crate::linalg;
 
@@ -25,7 +25,7 @@ struct Search<'a> {
     work: &'a mut Work,
     /// The residual of tractions under a prescribed motion.
     tolerance: f64,
-    outcome: Outcome,
+    convergence: Convergence,
 }
 
 impl Search<'_> {
@@ -47,8 +47,8 @@ impl Search<'_> {
                 solution.begin_cold(held);
             }
             let found = solution.solve(held, self.kernel, self.tolerance, self.work);
-            self.outcome.iterations += found.iterations;
-            self.outcome.residual = found.residual;
+            self.convergence.iterations += found.iterations;
+            self.convergence.residual = found.residual;
             if found.is_solved {
                 let missing =
                     |k: usize, wanted: f64| (wanted - problem.carried(k, &solution.traction)) / problem.size(k);
@@ -88,9 +88,9 @@ impl Solution {
         kernel: &mut TangentialKernel,
         tolerance: f64,
         work: &mut Work,
-    ) -> Outcome {
+    ) -> Convergence {
         let tight = (1e-3 * tolerance).max(MOST_ACCURATE.min(tolerance));
-        let mut search = Search { problem, kernel, work, tolerance: tight, outcome: Outcome::default() };
+        let mut search = Search { problem, kernel, work, tolerance: tight, convergence: Convergence::default() };
         // a displacement that friction could cause, and the angle that moves the mean cell by as much
         let largest = problem.touching().map(|i| problem.bound[i]).fold(0.0, f64::max);
         let natural = problem.compliance * problem.side * largest;
@@ -98,14 +98,14 @@ impl Solution {
         let units = [natural, natural, natural / arm.max(f64::MIN_POSITIVE)];
         let mut motion = [0.0; 3];
         self.begin_cold(problem);
-        let Some(mut lacking) = search.missing(self, motion) else { return search.outcome };
+        let Some(mut lacking) = search.missing(self, motion) else { return search.convergence };
         for _ in 0..STEPS {
             if size(lacking) <= tolerance.max(10.0 * tight) {
                 self.motion = motion;
-                return Outcome { is_solved: true, ..search.outcome };
+                return Convergence { is_solved: true, ..search.convergence };
             }
             search.work.kept.clone_from(self);
-            let Some(step) = search.step(self, motion, lacking, units) else { return search.outcome };
+            let Some(step) = search.step(self, motion, lacking, units) else { return search.convergence };
             let mut share = 1.0;
             loop {
                 let next = [0, 1, 2].map(|k| motion[k] + share * step[k] * units[k]);
@@ -116,11 +116,11 @@ impl Solution {
                 }
                 share *= 0.5;
                 if share < LEAST_SHARE {
-                    return search.outcome;
+                    return search.convergence;
                 }
                 self.clone_from(&search.work.kept);
             }
         }
-        search.outcome
+        search.convergence
     }
 }

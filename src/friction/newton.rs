@@ -47,7 +47,7 @@ impl Work {
 
 /// How a solve went.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Outcome {
+pub(super) struct Convergence {
     pub(super) iterations: usize,
     /// Max of the residuals of stick and slip over the largest displacement, and of those of the loads.
     pub(super) residual: f64,
@@ -96,14 +96,14 @@ impl Solution {
         kernel: &mut TangentialKernel,
         tolerance: f64,
         work: &mut Work,
-    ) -> Outcome {
+    ) -> Convergence {
         self.begin(problem);
         work.carries = true;
         let mut found = self.solve(problem, kernel, tolerance, work);
         // where all cells near the limit would slip at once, loads are met by Newton steps alone
         work.carries = false;
         let mut iterations = found.iterations;
-        let goes_on = |found: Outcome| !found.is_solved && !problem.is_cancelled();
+        let goes_on = |found: Convergence| !found.is_solved && !problem.is_cancelled();
         if goes_on(found) {
             self.begin_cold(problem);
             found = self.solve(problem, kernel, tolerance, work);
@@ -113,7 +113,7 @@ impl Solution {
             found = self.find_by_motion(problem, kernel, tolerance, work);
             iterations += found.iterations;
         }
-        Outcome { iterations, ..found }
+        Convergence { iterations, ..found }
     }
 
     /// Newton's method in the sets of cells that stick and slip, by conjugate gradients in the null space of the
@@ -124,7 +124,7 @@ impl Solution {
         kernel: &mut TangentialKernel,
         tolerance: f64,
         work: &mut Work,
-    ) -> Outcome {
+    ) -> Convergence {
         let n = problem.cells();
         let drift =
             problem.touching().map(|i| problem.drift[i].abs().max(problem.drift[n + i].abs())).fold(0.0, f64::max);
@@ -132,7 +132,7 @@ impl Solution {
         let (largest, count) =
             problem.touching().fold((0.0_f64, 0), |(r, count), i| (r.max(problem.bound[i]), count + 1));
         let least = NEWTON.negligible * problem.compliance * largest * problem.side * f64::from(count).sqrt();
-        let mut outcome = Outcome::default();
+        let mut convergence = Convergence::default();
         work.changed = false;
         work.began.fill(false);
         work.modes.are_known = false;
@@ -148,8 +148,12 @@ impl Solution {
             let balance = problem.balance(gaps);
             let residual = self.judge(problem, work) / scale;
             let is_solved = residual <= tolerance && balance <= tolerance;
-            outcome = Outcome { iterations: iteration, residual: residual.max(balance), is_solved };
-            if outcome.is_solved || iteration == NEWTON.most_steps || !residual.is_finite() || problem.is_cancelled() {
+            convergence = Convergence { iterations: iteration, residual: residual.max(balance), is_solved };
+            if convergence.is_solved
+                || iteration == NEWTON.most_steps
+                || !residual.is_finite()
+                || problem.is_cancelled()
+            {
                 break;
             }
             if iteration > NEWTON.patience && iteration % 4 == 0 {
@@ -173,7 +177,7 @@ impl Solution {
             (0..3).for_each(|k| self.motion[k] += work.change[k]);
             self.carry(problem, work, 0.003 * tolerance);
         }
-        outcome
+        convergence
     }
 
     /// Changes the tractions by the step found last: what leaves its circle slips. Returns whether other cells began

@@ -141,10 +141,15 @@ fn random(seed: u64) -> Option<Scene<FrictionContact>> {
     let pushes = matches!(control, Control::Force(_));
     let [first, second] = [0, 1].map(|_| along(friction * depth, pushes));
     let shear = ShearHistory::new(first, second);
-    let builder = ViscoelasticContact::builder(Grid::square(12, 1.0).unwrap())
+    let grid = Grid::square(12, 1.0).unwrap();
+    let mut builder = ViscoelasticContact::builder(grid.clone())
         .geometry(&*shape)
         .material(body.material)
         .settings(Settings::default().with_edge(Edge::Allow));
+    if draws.chance(0.4) {
+        builder = builder.kernel(InfluenceKernel::periodic(&grid).unwrap());
+        name += ", periodic";
+    }
     let contact = match FrictionContact::new(builder, Coulomb::new(friction).unwrap()) {
         Err(error) if error.code() == "friction_other_bodies" => return None,
         contact => contact.unwrap().sheared_by(shear),

@@ -118,16 +118,21 @@ fn in_space() {
         let [x1, x2] = [f64::cos(angle), f64::sin(angle)];
         let [first, second] =
             [x1, x2].map(|part| Swing { mean: part * swing.mean, most: part * swing.most, ..swing.clone() });
-        let builder = ViscoelasticContact::builder(Grid::square(16, 1.0).unwrap())
+        let grid = Grid::square(16, 1.0).unwrap();
+        let mut builder = ViscoelasticContact::builder(grid.clone())
             .geometry(&Sphere::new(1.0).unwrap())
             .material(body)
             .settings(Settings::default().with_edge(Edge::Allow));
+        let is_periodic = draws.chance(0.4);
+        if is_periodic {
+            builder = builder.kernel(InfluenceKernel::periodic(&grid).unwrap());
+        }
         let contact = FrictionContact::new(builder, Coulomb::new(0.5).unwrap()).unwrap();
         let contact = contact.sheared_by(ShearHistory::new(first, second));
         let along = |contact: &FrictionContact| x1 * contact.force()[0] + x2 * contact.force()[1];
         let (ratio, steps, again) = over_asked(&contact, &pressed, (3e-3, 0.3, 200), along);
         stuck_again += usize::from(again);
-        ratios.push(ratio, &format!("{seed}, {steps} steps"));
+        ratios.push(ratio, &format!("{seed}, {steps} steps, periodic {is_periodic}"));
     }
     ratios.print("in space", 4);
     assert!(ratios.greatest() < 2.0 && 2 * stuck_again > ratios.count(), "{stuck_again}");

@@ -23,7 +23,7 @@ use crate::run::histories::Histories;
 use crate::run::passage::{AT_START, Passage, Span};
 use crate::run::progress::{Progress, SAME_TIME, Stepping};
 use judge::{FIRST_STEP, Judge, MAX_GROWTH, Record, Tries};
-use rounded::Rounded;
+use rounded::WithoutRounding;
 
 /// Rounding of times: no step is shorter than this part of the time.
 const SHORTEST: f64 = 8.0 * f64::EPSILON;
@@ -60,8 +60,8 @@ impl<C: Contact, J: Judge<C>> Doubled<C, J> {
     }
 
     /// The history that the steps follow.
-    fn rounded<'a>(&self, contact: &C, history: &'a dyn LoadHistory) -> Rounded<'a> {
-        Rounded { history, rest: J::rest(contact), least: self.record.least_load }
+    fn rounded<'a>(&self, contact: &C, history: &'a dyn LoadHistory) -> WithoutRounding<'a> {
+        WithoutRounding { history, rest: J::rest(contact), least: self.record.least_load }
     }
 
     fn take_step(&mut self, contact: &mut C, course: &Course<'_>) -> Result<StepReport> {

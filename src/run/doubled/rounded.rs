@@ -6,14 +6,14 @@ use crate::load::{Load, LoadHistory};
 /// A history in which the bodies just touch where a load is positive, but below `least`: levels are
 /// powers of loads, and those of a pulse that begins at 1e-250 of its maximum underflow.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Rounded<'a> {
+pub(crate) struct WithoutRounding<'a> {
     pub(crate) history: &'a dyn LoadHistory,
     /// Approach at which the undisturbed bodies touch.
     pub(crate) rest: f64,
     pub(crate) least: f64,
 }
 
-impl Rounded<'_> {
+impl WithoutRounding<'_> {
     pub(crate) fn round(&self, mut load: Load) -> Load {
         let (value, touch) = match &mut load {
             Load::Force { normal, .. } => (normal, 0.0),
@@ -26,7 +26,7 @@ impl Rounded<'_> {
     }
 }
 
-impl LoadHistory for Rounded<'_> {
+impl LoadHistory for WithoutRounding<'_> {
     fn at(&self, t: f64) -> Load {
         self.round(self.history.at(t))
     }

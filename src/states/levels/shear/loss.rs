@@ -1,6 +1,6 @@
 //! What a step does along the surface: how far its groups move, and what they lose by slip.
 
-use super::{Outcome, Shear, inner_work, widths};
+use super::{Shear, Slipping, inner_work, widths};
 use crate::hereditary::GroupHistory;
 use crate::run::doubled::turned_back::turned_back;
 use crate::run::passage::Span;
@@ -37,8 +37,8 @@ fn taken(history: &mut GroupHistory, groups: &[Group], Shear { trial, mean, .. }
 
 impl Levels {
     /// Moves the groups by their tractions, and takes in what the step has done.
-    pub(super) fn commit_shear(&mut self, along: Demand, edge: f64, outcome: &Outcome) {
-        let Outcome { stick, ref met, share, sense, left } = *outcome;
+    pub(super) fn commit_shear(&mut self, along: Demand, edge: f64, slipping: &Slipping) {
+        let Slipping { stick, ref met, share, sense, left } = *slipping;
         let (compliance, level) = (self.history.rule().compliance(), self.level);
         let Levels { history, groups, shear: Some(shear), .. } = self else { return };
         let Some(now) = history.sheared() else { return };

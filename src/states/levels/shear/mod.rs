@@ -107,7 +107,7 @@ impl Wish {
 /// What a step does to the groups that it holds: the first ones `stick`, those `met` share a part of what they could
 /// carry, those between slip. What is `left` of the wish moves the whole contact.
 #[derive(Debug)]
-struct Outcome {
+struct Slipping {
     stick: usize,
     met: Range<usize>,
     share: f64,
@@ -239,9 +239,9 @@ impl Levels {
         let Some(shear) = &mut self.shear else { return };
         met.clone().for_each(|k| shear.tractions[k] = share * self.groups[k].traction);
         let left = if part < 1.0 { 0.0 } else { needed - needed / part };
-        let mut outcome = Outcome { stick: met.start, met, share, sense, left };
-        self.slip(states, wish, &mut outcome);
-        self.commit_shear(along, edge, &outcome);
+        let mut slipping = Slipping { stick: met.start, met, share, sense, left };
+        self.slip(states, wish, &mut slipping);
+        self.commit_shear(along, edge, &slipping);
     }
 
     /// Lets the groups that were held stick, and nothing act on the others. Returns what is lacking of a wish.
@@ -279,30 +279,30 @@ impl Levels {
     }
 
     /// Lets groups that were held slip, from the edge inwards, until nothing is left of a wish; cuts the last one.
-    fn slip(&mut self, states: &ElasticStates, wish: Wish, outcome: &mut Outcome) {
+    fn slip(&mut self, states: &ElasticStates, wish: Wish, slipping: &mut Slipping) {
         let compliance = self.history.rule().compliance();
-        while outcome.left != 0.0 && outcome.stick > 0 {
+        while slipping.left != 0.0 && slipping.stick > 0 {
             let Some(shear) = &mut self.shear else { return };
-            let k = outcome.stick - 1;
-            let more = outcome.sense * self.groups[k].traction - shear.tractions[k];
+            let k = slipping.stick - 1;
+            let more = slipping.sense * self.groups[k].traction - shear.tractions[k];
             let gain = wish.of(widths(&self.groups, k), more, compliance * more);
-            if outcome.sense * gain < outcome.sense * outcome.left {
+            if slipping.sense * gain < slipping.sense * slipping.left {
                 shear.tractions[k] += more;
-                (outcome.stick, outcome.left) = (k, outcome.left - gain);
+                (slipping.stick, slipping.left) = (k, slipping.left - gain);
                 continue;
             }
             // where the weighted sum of level and depth is this much less than at the top
             let (Group { top, motions, .. }, [a, b]) =
                 (self.groups[k], [wish.weights[0], wish.weights[1] * compliance]);
-            let sum = a * top + b * motions.depth - outcome.left / more;
+            let sum = a * top + b * motions.depth - slipping.left / more;
             let level = if b == 0.0 { sum / a } else { states.level_where(a / b, sum / b) };
             let (level, before) = (level.min(top).max(self.bottom(k).0), self.groups.len());
             self.cut_at(states, level);
             let (added, stick) = (self.groups.len() - before, self.groups_to(level));
-            outcome.met = outcome.met.start + added..outcome.met.end + added;
-            (outcome.stick, outcome.left) = (stick, 0.0);
+            slipping.met = slipping.met.start + added..slipping.met.end + added;
+            (slipping.stick, slipping.left) = (stick, 0.0);
             let Some(shear) = &mut self.shear else { return };
-            (stick..k + 1 + added).for_each(|k| shear.tractions[k] = outcome.sense * self.groups[k].traction);
+            (stick..k + 1 + added).for_each(|k| shear.tractions[k] = slipping.sense * self.groups[k].traction);
         }
     }
 
