@@ -253,9 +253,9 @@ impl Levels {
         let Some(now) = history.sheared() else { return 0.0 };
         let moved = now.iter().zip(&shear.trial).zip(&mut shear.tractions);
         for (k, ((&now, &free), traction)) in moved.enumerate() {
-            let stuck = if k < stick { now } else { free };
-            *traction = if k < stick { (now - free) / compliance } else { 0.0 };
-            let has = wish.of(widths(groups, k), *traction, stuck);
+            let (acts, displacement) = if k < stick { ((now - free) / compliance, now) } else { (0.0, free) };
+            *traction = acts;
+            let has = wish.of(widths(groups, k), acts, displacement);
             (needed, size) = (needed - has, size + has.abs());
         }
         if needed.abs() <= ROUNDED * size { 0.0 } else { needed }
