@@ -147,7 +147,7 @@ impl StepSearch<'_> {
         if !contact.attracts() || resolved && error.relative > control.tolerance {
             return Ok(Tried { attempt, error, excess, halves: None });
         }
-        self.in_halves(contact, step, outlook, error, excess)
+        self.in_halves(contact, attempt, step, outlook, error, excess)
     }
 
     /// Whether a shorter step may succeed where this one has failed. Where the bodies separate within it, a shorter one
@@ -216,8 +216,11 @@ impl StepSearch<'_> {
         let (rule, given) = (computed.state.history.rule(), !computed.trial.free.iter().any(|free| free.translation));
         let (errors, length) =
             halves.as_ref().map_or((std::slice::from_ref(&error), self.dt), |both| (both, 0.5 * self.dt));
+        // by the weights of this step, which those of the parts of a jump replace
         errors.iter().for_each(|error| self.control.past.include(rule, length, error, given));
-        self.control.accept(step.interval.reduced, step.loads, self.dt, is_last, proposal);
-        contact.accept(attempt, step, error)
+        let (reduced, loads) = (step.interval.reduced, step.loads);
+        let report = contact.accept(attempt, step, error)?;
+        self.control.accept(reduced, loads, self.dt, is_last, proposal);
+        Ok(report)
     }
 }

@@ -1,5 +1,6 @@
 //! In place of the steps of surfaces that attract each other, where their room is not compiled.
 
+use crate::contact::step::Attempt;
 use crate::contact::{State, Step, ViscoelasticContact};
 use crate::error::{Error, Result, missing};
 use crate::hereditary::{StepContext, TimeError};
@@ -23,6 +24,7 @@ impl StepSearch<'_> {
     pub(super) fn in_halves(
         &mut self,
         _: &mut ViscoelasticContact,
+        _: Attempt,
         _: &mut Step<'_>,
         _: &StepContext,
         _: TimeError,

@@ -1,9 +1,12 @@
 //! Adaptive steps of surfaces that attract each other, against many short steps of given length: random scenes through snap-in and pull-off.
 //! `ADHESION_RUNS` (3) and `ADHESION_SEED` (1) choose others.
 
+use std::sync::Arc;
+
 use super::adhesion_population::{Drawn, SIDE, Scene};
 use crate::common::draws::Draws;
 use crate::common::environment::from_environment;
+use viscocontact::adhesion::ExponentialAttraction;
 use viscocontact::contact::Warnings;
 use viscocontact::prelude::*;
 
@@ -224,5 +227,53 @@ fn the_moment_of_separation() {
         let found = pull(&scene, Stepping::adaptive(tolerance));
         println!("{tolerance}: separates at {found:.4}, in short steps at {short:.3}");
         assert!((found - short).abs() < 0.01 + 5.0 * tolerance * SPAN, "{found} {short}");
+    }
+}
+
+/// A ball that begins to tilt within a run, and comes back, is no longer symmetric: the run goes on as one whose ball was never upright.
+#[test]
+fn a_ball_that_begins_to_tilt_is_no_longer_symmetric() {
+    for law in [1.0, 0.3].map(|range| Arc::new(ExponentialAttraction::new(1.0, range).unwrap())) {
+        for tilted in [[0.05, 0.0], [0.02, -0.04]] {
+            let path = |least: f64| {
+                let points = [
+                    (0.0, -1.0, 0.0),
+                    (2.0, 0.5, 0.0),
+                    (4.0, 0.6, 1.0),
+                    (6.0, 0.5, 0.0),
+                    (9.0, -1.0, 0.0),
+                    (10.0, -1.5, 0.5),
+                ];
+                let load =
+                    |at: f64, part: f64| Load::approach_and_tilt(at, tilted.map(|tilt: f64| tilt * part.max(least)));
+                PiecewiseLinear::new(&points.map(|(time, at, part)| (time, load(at, part)))).unwrap()
+            };
+            let [folded, whole] = [0.0, 1e-9].map(|least| {
+                let body = GeneralizedMaxwell::new(0.25, &[(0.5, 1.0), (0.25, 4.0)]).unwrap();
+                let mut contact = ViscoelasticContact::builder(Grid::square(24, SIDE).unwrap())
+                    .geometry(&Sphere::new(4.0).unwrap())
+                    .material(Material::incompressible(body))
+                    .attraction(law.clone())
+                    .settings(Settings::default().with_tolerance(1e-7).with_edge(Edge::Allow))
+                    .build()
+                    .unwrap();
+                let path = path(least);
+                let mut run = contact.follow(&path, Stepping::adaptive(1e-2), SPAN);
+                let mut states = Vec::new();
+                while let Some(report) = run.next_step().unwrap() {
+                    states.push([report.time, report.force, report.approach]);
+                }
+                states
+            });
+            let greatest = whole.iter().fold(0.0, |most: f64, state| most.max(state[1].abs()));
+            println!("{} and {} steps", folded.len(), whole.len());
+            assert_eq!(folded.len(), whole.len());
+            for (folded, whole) in folded.iter().zip(&whole) {
+                assert!(
+                    (folded[0] - whole[0]).abs() < 1e-4 * SPAN && (folded[1] - whole[1]).abs() < 1e-3 * greatest,
+                    "{folded:?} {whole:?}"
+                );
+            }
+        }
     }
 }

@@ -168,11 +168,30 @@ impl ViscoelasticContact {
         tried.map(|sum| Attempt { larger, sum })
     }
 
+    /// Computes a step, and goes on with the region that it needed. The state stays that before the step.
+    #[cfg(feature = "adhesion")]
+    pub(crate) fn attempt_on_its_region(&mut self, step: &Step<'_>) -> Result<Attempt> {
+        let attempt = self.attempt(step)?;
+        let sum = attempt.sum;
+        self.move_to_region_of(attempt);
+        Ok(Attempt { larger: None, sum })
+    }
+
+    /// Goes on with the region of an attempt, with the state before it.
+    #[cfg(feature = "adhesion")]
+    pub(crate) fn move_to_region_of(&mut self, attempt: Attempt) {
+        if let Some(larger) = attempt.larger {
+            self.computation = *larger;
+            self.view.refresh(&self.computation.state.held);
+        }
+    }
+
     /// Makes an attempt the state, and reports it. The loss of a rank is an error, which leaves the state unchanged.
     pub(crate) fn accept(&mut self, attempt: Attempt, step: Step<'_>, error: TimeError) -> Result<StepReport> {
         // lengths beyond 1e154 m have no squares, and so no estimate
         let estimated = step.interval.stride == [0; 2] && error.relative.is_finite();
-        let is_suspected = self.computation.attracted.as_ref().is_some_and(|own| own.suspects_jump());
+        let attracted = &attempt.computation(&self.computation).attracted;
+        let is_suspected = attracted.as_ref().is_some_and(|own| own.suspects_jump());
         let again = is_suspected.then(|| (step.clone(), self.computation.state.clone()));
         let pressed = self.adopt(attempt, step, error.sizes)?;
         if let Some((step, before)) = again

@@ -10,6 +10,7 @@ mod search;
 use crate::contact::step::Attempt;
 use crate::contact::step::error_in_time::{error_in_time, least_sizes};
 use crate::contact::{Computation, State, Step, ViscoelasticContact};
+use crate::equilibrium::Region;
 use crate::error::{Error, Result};
 use crate::hereditary::{Interval, StepContext, TimeError, WEIGHTS};
 use crate::load::LoadHistory;
@@ -40,15 +41,17 @@ impl Halves {
         Halves { start: state.clone(), middle: f64::NAN, whole: [field(), field(), field()] }
     }
 
-    /// Takes the first half of a step that was tried, and tries the second, which takes the place of the `step`.
+    /// Takes the first half of a step whose `whole` was tried, and tries the second, which takes the place of the `step`.
     fn divide(
         &mut self,
         contact: &mut ViscoelasticContact,
+        whole: Attempt,
         step: &mut Step<'_>,
         history: &dyn LoadHistory,
         outlook: &StepContext,
         wasted: &mut [usize; 2],
     ) -> Result<Divided> {
+        contact.move_to_region_of(whole);
         self.keep(&contact.computation);
         contact.computation.add_work(wasted);
         let passes = |contact: &ViscoelasticContact| contact.passes().unwrap_or_default();
@@ -57,17 +60,18 @@ impl Halves {
         let loads = [history.checked_before(self.middle, true)?];
         let first = Step { loads: &loads, ..step.clone() };
         let first = Step { interval: until(contact, step, self.middle)?, ..first };
-        let attempt = contact.attempt(&first)?;
+        let attempt = contact.attempt_on_its_region(&first)?;
         let of_first = error_in_time(&contact.scene, &contact.computation, &first, outlook);
         contact.computation.add_work(wasted);
         let of_first_half = passes(contact);
         contact.adopt(attempt, first, of_first.sizes)?;
         step.interval = until(contact, step, time)?;
-        let attempt = contact.attempt(step)?;
+        let attempt = contact.attempt_on_its_region(step)?;
         let of_second = error_in_time(&contact.scene, &contact.computation, step, outlook);
         if let Some(passes) = contact.computation.attracted.as_mut() {
             passes.report = passes.report.after(of_first_half, of_whole);
         }
+        self.whole_on(&contact.computation.state.held.region);
         let difference = WEIGHTS.halves * self.difference(contact, outlook);
         Ok(Divided { attempt, difference, errors: [of_first, of_second] })
     }
@@ -91,6 +95,14 @@ impl Halves {
         displacement.clear();
         displacement.extend_from_slice(state.history.trial());
         potential.clone_from(&trial.solution.potential);
+    }
+
+    /// Where the halves needed another region, the whole step gets to it as well.
+    fn whole_on(&mut self, region: &Region) {
+        let from = &self.start.held.region;
+        if region.len() != from.len() {
+            self.whole.iter_mut().for_each(|field| *field = from.transfer(field, region, |_| 0.0));
+        }
     }
 
     /// The mean difference of u or v from the whole step, weighted by |z − s|, over their means.

@@ -1,6 +1,7 @@
 //! The search for a step whose halves are kept.
 
 use super::{Divided, Halves, greater};
+use crate::contact::step::Attempt;
 use crate::contact::{Step, ViscoelasticContact};
 use crate::error::Result;
 use crate::hereditary::{StepContext, TimeError, WEIGHTS};
@@ -11,6 +12,7 @@ impl StepSearch<'_> {
     pub(in crate::run) fn in_halves(
         &mut self,
         contact: &mut ViscoelasticContact,
+        whole: Attempt,
         step: &mut Step<'_>,
         outlook: &StepContext,
         mut error: TimeError,
@@ -18,7 +20,7 @@ impl StepSearch<'_> {
     ) -> Result<Tried> {
         let StepSearch { control, course, wasted, .. } = self;
         let mut halves = control.halves.take().unwrap_or_else(|| Box::new(Halves::new(&contact.computation.state)));
-        let divided = halves.divide(contact, step, course.histories.first(), outlook, wasted);
+        let divided = halves.divide(contact, whole, step, course.histories.first(), outlook, wasted);
         if divided.is_err() {
             contact.computation.add_work(wasted);
             halves.undo(contact);
