@@ -150,7 +150,9 @@ impl FrictionContact {
     /// # Errors
     /// As [`FrictionContact::step`], and [`Error::Cancelled`].
     pub fn step_unless(&mut self, cancelled: &AtomicBool, dt: f64, load: Load, shear: ShearLoad) -> Result<Outcome> {
-        self.advance(cancelled, dt, load, shear, self.normal.settings().tolerance)
+        let outcome = self.advance(cancelled, dt, load, shear, self.normal.settings().tolerance)?;
+        self.saved_run = None; // a run that a file held does not know of it
+        Ok(outcome)
     }
 
     /// Takes a step that is solved to a tolerance.

@@ -171,7 +171,9 @@ impl StatesContact {
     /// body has no elastic response, or the time under load is beyond the material's. A step that fails changes
     /// nothing but, with exact states, the states between which it interpolates.
     pub fn step(&mut self, dt: f64, load: Load) -> Result<StepReport> {
-        self.step_to(self.time + dt, dt, load)
+        let report = self.step_to(self.time + dt, dt, load)?;
+        self.saved_run = None; // a run that a file held does not know of it
+        Ok(report)
     }
 
     /// The demand of a load, the level that the end of a step to it has, and the reduced time there.

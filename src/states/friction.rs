@@ -170,7 +170,9 @@ impl StatesContact {
     /// As [`StatesContact::step`]; if there is no friction, [`Error::Slides`] if the force is more than f P, and if a
     /// load along the surface has a tilt.
     pub fn step_sheared(&mut self, dt: f64, load: Load, along: Load) -> Result<StepReport> {
-        self.step_along(self.time() + dt, dt, load, Some(along))
+        let report = self.step_along(self.time() + dt, dt, load, Some(along))?;
+        self.saved_run = None;
+        Ok(report)
     }
 
     /// What a step of length `dt` to `time` asks of the levels along the surface: that of its history at a jump of no

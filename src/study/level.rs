@@ -37,11 +37,14 @@ pub(super) struct Level {
     pub(super) grid: Grid,
     pub(super) builder: Builder,
     pub(super) contact: ViscoelasticContact,
-    /// Ends of steps; of several at one time, as around jumps, each.
+    /// Ends of steps; where several steps end at one time, as at a jump, each is listed.
     pub(super) times: Vec<f64>,
-    /// Values of each observable at these times; one of the largest ones.
+    /// Values of each observable at these times; a single one for [`Reading::Greatest`], none for
+    /// [`Reading::Pressure`].
     pub(super) values: Vec<Vec<f64>>,
     pub(super) fields: Vec<KeptFields>,
+    /// The maximum error in time of these that the run tells.
+    pub(super) field_error: f64,
     /// The contact of all times.
     pub(super) domain: Domain,
     /// Convolution equivalents.
@@ -68,7 +71,7 @@ impl Runs<'_, '_> {
             run = run.sample_at(self.fields_at)?.fields_to(in_time)?;
         }
         let (mut times, mut values, mut fields) = (Vec::new(), vec![Vec::new(); self.observed.len()], Vec::new());
-        let (mut domain, mut convolutions) = (Domain::empty(self.sides), 0.0);
+        let (mut domain, mut convolutions, mut field_error) = (Domain::empty(self.sides), 0.0, 0.0_f64);
         let (cells, size) = (grid.cells(), grid.len() as f64);
         while let Some(report) = run.next_step()? {
             let now = run.contact().fields();
@@ -89,6 +92,7 @@ impl Runs<'_, '_> {
                     let sample = sample?;
                     if sample.is_asked_for() {
                         // of states at one time, as around a jump, the last
+                        field_error = field_error.max(sample.field().and_then(|field| field.error).unwrap_or(0.0));
                         let kept = sample.fields().keep();
                         fields.pop_if(|last: &mut KeptFields| last.fields().time() == kept.fields().time());
                         fields.push(kept);
@@ -106,7 +110,7 @@ impl Runs<'_, '_> {
         }
         drop(run);
         self.runs += 1;
-        Ok(Level { grid, builder, contact, times, values, fields, domain, convolutions, bytes })
+        Ok(Level { grid, builder, contact, times, values, fields, field_error, domain, convolutions, bytes })
     }
 }
 

@@ -21,7 +21,7 @@ pub use result::{Ending, Measured, Mesh, StudyResult};
 use crate::Grid;
 use crate::axis::Axis;
 use crate::contact::{Builder, Settings};
-use crate::error::{Result, count_within, coverage, exact_length, positive, within};
+use crate::error::{Refusal, Result, count_within, coverage, exact_length, positive, within};
 use crate::fields::Fields;
 use crate::load::LoadHistory;
 use crate::study::domain::{Side, probe};
@@ -288,6 +288,14 @@ impl<'a> Study<'a> {
         for &time in fields_at {
             let inside = (0.0..=scene.until).contains(&time);
             within("time of a pressure field", time, inside, "from the start of the run to its end")?;
+        }
+        for (k, Observed { name, .. }) in self.observed.iter().enumerate() {
+            let is_valid = !name.is_empty() && !name.contains(|c: char| ",#\"".contains(c) || c.is_control());
+            if !is_valid || self.observed[..k].iter().any(|earlier| earlier.name == *name) {
+                let refusal = Refusal::value("study_name", format!("the name of a quantity is {name:?}"), "");
+                let allowed = "no other's, not empty, and without commas, '#', quotes and control characters";
+                return Err(refusal.naming("name of a quantity").must_be(allowed).into());
+            }
         }
         count_within("cells of a study", budget.cells, budget.cells > 0, "at least 1")?;
         if let Some(most) = budget.work {

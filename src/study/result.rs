@@ -262,7 +262,7 @@ impl StudyResult {
         Some(Cost { cells, steps: steps.ceil() as usize, work, bytes: (self.bytes() as f64 * many) as u64 })
     }
 
-    /// Writes the table as a CSV file: a row for each mesh, and rows of errors, orders and values. An existing file
+    /// Writes the table as a CSV file: a row for each mesh, and rows of orders and errors. An existing file
     /// is replaced.
     ///
     /// # Errors
@@ -306,7 +306,7 @@ impl fmt::Display for StudyResult {
         let ([n1, n2], side) = (self.finest.grid.cells(), self.finest.grid.spacing()[0]);
         writeln!(
             f,
-            "accuracy {:.0e}: {}; {n1} × {n2} cells of {side:.2e} m, {} steps, {} runs",
+            "accuracy {:e}: {}; {n1} × {n2} cells of {side:.2e} m, {} steps, {} runs",
             self.accuracy,
             self.ending,
             self.finest.steps(),

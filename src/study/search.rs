@@ -9,7 +9,7 @@ use crate::observe::grid_convergence::{OfMesh, SINGULAR, SMOOTH};
 use crate::study::course::COURSE;
 use crate::study::domain::Domain;
 use crate::study::level::{Level, Runs};
-use crate::study::observable::{Observed, Reading};
+use crate::study::observable::{Observable, Observed, Reading};
 use crate::study::result::{Growth, Mesh, Steps, StudyResult};
 use crate::study::{Budget, Ending, Measured, Study, StudyProgress};
 
@@ -96,9 +96,14 @@ fn next_grid(domain: &Domain, across: f64, ratio: f64, most_cells: usize) -> Res
         return Ok((ratio * across, next));
     }
     // sizes of grids go by steps of up to a tenth
-    let allowed = 0.9 * ratio * (most_cells as f64 / next.len() as f64).sqrt();
+    let allowed = 0.9 * ratio * (most_cells as f64 / next.len() as f64).powf(1.0 / axes(&next));
     let finer = allowed.clamp(COURSE.ratios[0], ratio) * across;
     Ok((finer, domain.grid(finer)?))
+}
+
+/// Axes along which a grid has more than one cell.
+fn axes(grid: &Grid) -> f64 {
+    grid.cells().iter().filter(|n| **n > 1).count().max(1) as f64
 }
 
 impl Budget {
@@ -108,16 +113,22 @@ impl Budget {
         let mut asked = result.quantities.iter().filter(|own| own.is_asked);
         // what the next mesh takes by what the last one took
         let size = next.len() as f64 / result.finest.grid.len() as f64;
-        let expected = result.work_of_finest() * size.powf(1.0 + 0.5 * result.growth.convolutions);
+        let expected = result.work_of_finest() * size.powf(1.0 + result.growth.convolutions / axes(next));
         let bytes = (result.bytes() as f64 * size) as u64;
-        match () {
-            () if asked.clone().all(|own| own.error().is_some_and(|error| error <= accuracy)) => Some(Ending::Reached),
-            () if asked.any(|own| own.time >= accuracy) => Some(Ending::Time),
-            () if unconverged >= COURSE.most_unconverged => Some(Ending::NoConvergence),
-            () if next.len() > self.cells => Some(Ending::Cells),
-            () if self.bytes.is_some_and(|most| bytes > most) => Some(Ending::Memory),
-            () if self.work.is_some_and(|most| work + expected > most) => Some(Ending::Work),
-            () => None,
+        if asked.clone().all(|own| own.error().is_some_and(|error| error <= accuracy)) {
+            Some(Ending::Reached)
+        } else if asked.any(|own| own.time >= accuracy) {
+            Some(Ending::Time)
+        } else if unconverged >= COURSE.most_unconverged {
+            Some(Ending::NoConvergence)
+        } else if next.len() > self.cells {
+            Some(Ending::Cells)
+        } else if self.bytes.is_some_and(|most| bytes > most) {
+            Some(Ending::Memory)
+        } else if self.work.is_some_and(|most| work + expected > most) {
+            Some(Ending::Work)
+        } else {
+            None
         }
     }
 }
@@ -125,7 +136,9 @@ impl Budget {
 /// Runs the first mesh on a domain that holds the contact, in steps that are short enough.
 fn first_mesh(runs: &mut Runs<'_, '_>, mut domain: Domain, most_cells: usize) -> Result<First> {
     let accuracy = runs.scene.accuracy;
-    let mut tolerance = (COURSE.tolerance * accuracy).clamp(COURSE.tolerances[0], COURSE.tolerances[1]);
+    // the run in shorter steps has one that a run may be asked for
+    let least = COURSE.shorter * COURSE.tolerances[0];
+    let mut tolerance = (COURSE.tolerance * accuracy).clamp(least, COURSE.tolerances[1]);
     let mut across = if domain.is_given() { COURSE.across_given } else { COURSE.across };
     let mut tries = 0;
     let level = loop {
@@ -149,22 +162,27 @@ fn first_mesh(runs: &mut Runs<'_, '_>, mut domain: Domain, most_cells: usize) ->
     let mut base = level;
     let (common, mut stops, mut steps_order) = (base.times.clone(), Vec::new(), 0.0);
     let mut in_time = Vec::new();
-    // the error of the second is a part of their difference itself
+    // the run in shorter steps has an eighth of the error of the first, which is thus 8/7 of their difference
     let of_both = COURSE.shorter / (COURSE.shorter - 1.0);
     for tries in 0..=COURSE.most_shortened {
-        let fine = runs.level(base.grid.clone(), (tolerance / COURSE.shorter).max(COURSE.tolerances[0]), &common)?;
+        let fine = runs.level(base.grid.clone(), tolerance / COURSE.shorter, &common)?;
         if tries == 0 {
             let more = fine.steps() as f64 / base.steps().max(1) as f64;
             steps_order = (more.ln() / COURSE.shorter.ln()).clamp(0.0, 1.0);
         }
         let differences = base.differences(&fine, runs.observed);
-        in_time = differences.into_iter().map(|difference| of_both * difference).collect();
+        in_time = differences.into_iter().map(|difference| of_both * difference).collect::<Vec<_>>();
+        // pressures of both are of one accuracy, and their errors in their difference are none
+        if tolerance < COURSE.shorter * COURSE.least_of_fields {
+            let of_pressure = |own: &Observed<'_>| matches!(own.reading, Reading::Pressure);
+            let errors = runs.observed.iter().zip(&mut in_time).filter(|(own, _)| of_pressure(own));
+            errors.for_each(|(_, error)| *error = error.max(base.field_error));
+        }
         let worst = worst_asked(runs.observed, &in_time);
-        if worst <= COURSE.in_time * accuracy || tries == COURSE.most_shortened || tolerance <= COURSE.tolerances[0] {
+        if worst <= COURSE.in_time * accuracy || tries == COURSE.most_shortened || tolerance <= least {
             break;
         }
-        tolerance =
-            (tolerance * (COURSE.aim_in_time * accuracy / worst).max(1.0 / COURSE.shorter)).max(COURSE.tolerances[0]);
+        tolerance = (tolerance * (COURSE.aim_in_time * accuracy / worst).max(1.0 / COURSE.shorter)).max(least);
         base = runs.level(base.grid.clone(), tolerance, &common)?;
         stops.clone_from(&common);
     }
@@ -181,8 +199,8 @@ fn measured(observed: &[Observed<'_>], meshes: &[Mesh], in_time: &[f64], accurac
     let all = |k: usize| meshes.iter().filter_map(|mesh| mesh.changes[k]).collect::<Vec<f64>>();
     // a pressure that does not converge is infinite at an edge or a tip: nothing is of a higher order than the first
     // beside it
-    let is_greatest = |own: &Observed<'_>| matches!(own.reading, Reading::Greatest(_));
-    let peak = observed.iter().position(is_greatest).map(&all).unwrap_or_default();
+    let is_peak = |own: &Observed<'_>| own.name == Observable::MaxPressure.name();
+    let peak = observed.iter().position(is_peak).map(&all).unwrap_or_default();
     let is_singular = peak.len() > 1 && OfMesh::of(&sides, &peak, SMOOTH).order.is_none();
     let most = if is_singular { SINGULAR } else { SMOOTH };
     let one = |(k, own): (usize, &Observed<'_>)| {

@@ -133,6 +133,10 @@ const PROVOKED: &[Provoked] = &[
         contact.step_sheared(0.1, Load::force(0.1), Load::force(0.2)).map(drop)
     }),
     ("states_other_tilt", || states()?.step(0.1, Load::eccentric_force(0.1, [1.0e-4, 0.0])).map(drop)),
+    ("study_name", || {
+        let (load, scene) = (StepLoad::new(Load::force(0.1))?, |grid, _| Ok(builder_on(grid, elastic())));
+        Study::new(scene, &load, 1.0).ask_own("a, b", |_| 0.0).run().map(drop)
+    }),
     ("table_mixed_isotherms", || {
         let moduli = isotherm(Experiment::Relaxation, 300.0, |t| 1.0e6 / (1.0 + t))?;
         let compliances = isotherm(Experiment::Creep, 320.0, |t| 1.0e-6 * (1.0 + t))?;

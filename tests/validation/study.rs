@@ -198,6 +198,7 @@ fn what_a_study_cannot_be_is_refused() {
         (study().fields_at(&[2.0]).run().err(), "time of a pressure field"),
         (study().cells(0).run().err(), "cells of a study"),
         (study().work(f64::NAN).run().err(), "work of a study"),
+        (study().ask_own("approach", |_| 0.0).run().err(), "name of a quantity"),
         (Study::along_each(sticky, &[], 1.0).run().err(), "load histories of the rigid bodies"),
     ]);
     not_covered([(Study::new(sticky, &driven, 1.0).run().err(), "Study::domain")]);

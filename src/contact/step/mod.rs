@@ -109,7 +109,9 @@ impl ViscoelasticContact {
             let requested =
                 requested.and_then(|step| validate_loads(&self.scene.ground, step.request()).map(|()| step));
             let step = rows.agree(requested)?;
-            self.take(Step { cancelled, ..step })
+            let report = self.take(Step { cancelled, ..step })?;
+            self.saved_run = None; // a run that a file held does not know of it
+            Ok(report)
         })
     }
 

@@ -118,8 +118,14 @@ impl Levels {
     /// Whether these may be levels of the contact of `other`; a damaged file may hold any.
     #[cfg(feature = "checkpoint")]
     pub(super) fn fits(&self, other: &Levels) -> bool {
-        let (tops, numbers) = (|| self.groups.iter().map(|group| group.top), [self.level, self.force, self.lift]);
-        let is_finite = tops().chain(numbers).chain(self.passed).all(f64::is_finite);
+        let tops = || self.groups.iter().map(|group| group.top);
+        let of_motions = |Motions { depth, tilt: [tilt1, tilt2] }: Motions| [depth, tilt1, tilt2];
+        let of_groups = self.groups.iter().flat_map(|group| {
+            let Group { top, motions, traction, shear, work } = *group;
+            of_motions(motions).into_iter().chain([top, traction, shear, work])
+        });
+        let numbers = of_motions(self.motions).into_iter().chain([self.level, self.force, self.lift]);
+        let is_finite = of_groups.chain(numbers).chain(self.passed).all(f64::is_finite);
         let is_sheared = match &self.shear {
             Some(shear) => other.shear.is_some() && shear.fits(),
             None => other.shear.is_none(),
