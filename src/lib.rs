@@ -165,7 +165,7 @@ mod dense;
 pub mod elastic;
 mod equilibrium;
 mod error;
-mod events;
+mod traced;
 mod extent;
 #[cfg(any(feature = "analytic", feature = "friction", feature = "sliding", feature = "stress", feature = "surfaces"))]
 mod fft;

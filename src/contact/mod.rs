@@ -53,4 +53,4 @@ pub use crate::equilibrium::{Edge, Figures, Frame, Settings, TimeRule, Warnings}
 pub(crate) use computation::Computation;
 pub(crate) use scene::Scene;
 pub(crate) use state::{Clock, State};
-pub(crate) use step::request::Step;
+pub(crate) use step::planned::Step;

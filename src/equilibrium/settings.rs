@@ -27,7 +27,8 @@ pub struct Settings {
     /// Where surfaces attract each other, forces are as exact, over the maximum attraction, down to 3e-4, and below
     /// 1e-6 to three hundred tolerances.
     tolerance: f64, with_tolerance;
-    /// Iterations a step may take before it fails (default: 1000; range: 1 or more).
+    /// Iterations a step may take before it fails, twice as many where surfaces attract each other (default: 1000;
+    /// range: 1 or more).
     max_iterations: usize, with_max_iterations;
     /// The time rule of the hereditary integral (default: [`TimeRule::Exponential`]).
     time_rule: TimeRule, with_time_rule;

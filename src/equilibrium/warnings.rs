@@ -99,7 +99,7 @@ bitflags! {
         const SHORT_WAVES = 1 << 16;
         /// The estimated error in time of the step exceeds 5 %
         /// ([`StepReport::time_error`](crate::contact::StepReport::time_error)): take shorter steps, or
-        /// [`Stepping::adaptive`](crate::contact::Stepping::adaptive) ones. Adaptive steps of a greater tolerance
+        /// [`Stepping::adaptive`](crate::run::Stepping::adaptive) ones. Adaptive steps of a greater tolerance
         /// carry it, too.
         const LONG_STEP = 1 << 17;
         /// The run has ended, and its approach or spring has never brought the bodies into contact: they touch at the
@@ -120,7 +120,7 @@ bitflags! {
         /// Traces of the indenter have left the grid behind it that could change approach or lateral force by more
         /// than 1 % ([`Figures::wake`](crate::contact::Figures::wake)): friction comes out too small. Lengthen the
         /// grid behind the contact, to some v τ of the slowest creep, or compute the steady state at once
-        /// ([`sliding`](crate::motion)).
+        /// ([`sliding`](crate::sliding)).
         const WAKE = 1 << 21;
     }
 }

@@ -1,4 +1,5 @@
-//! Errors that differ in what they say alone.
+//! Errors that differ only in their message. A new one needs no variant: it gets a code of its own where it is made
+//! ([`Refusal::value`] and its sisters), and is provoked in `tests/io/codes.rs`.
 
 use std::fmt;
 use std::io;

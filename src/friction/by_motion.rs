@@ -5,7 +5,7 @@
 //! far, since little is missing to the limit.
 
 use crate::friction::kernel::TangentialKernel;
-use crate::friction::newton::{Convergence, Work};
+use crate::friction::newton::{Convergence, NewtonBuffers};
 use crate::friction::problem::{Problem, Solution, take_motion};
 use crate::linalg;
 
@@ -22,7 +22,7 @@ const MOST_ACCURATE: f64 = 1e-12;
 struct Search<'a> {
     problem: &'a Problem<'a>,
     kernel: &'a mut TangentialKernel,
-    work: &'a mut Work,
+    buffers: &'a mut NewtonBuffers,
     /// The residual of tractions under a prescribed motion.
     tolerance: f64,
     convergence: Convergence,
@@ -32,11 +32,11 @@ impl Search<'_> {
     /// What is missing of each load under this motion, over its [scale](Problem::size), if the tractions are found.
     fn missing(&mut self, solution: &mut Solution, motion: [f64; 3]) -> Option<[f64; 3]> {
         let problem = self.problem;
-        let mut drift = std::mem::take(&mut self.work.drift);
+        let mut drift = std::mem::take(&mut self.buffers.drift);
         drift.copy_from_slice(problem.drift);
         take_motion(&mut drift, problem.touching(), problem.entered, problem.places, motion);
         let missing = self.missing_of(solution, &Problem { drift: &drift, wanted: [None; 3], ..*problem });
-        self.work.drift = drift;
+        self.buffers.drift = drift;
         missing
     }
 
@@ -46,7 +46,7 @@ impl Search<'_> {
             if is_cold {
                 solution.begin_cold(held);
             }
-            let found = solution.solve(held, self.kernel, self.tolerance, self.work);
+            let found = solution.solve(held, self.kernel, self.tolerance, self.buffers);
             self.convergence.iterations += found.iterations;
             self.convergence.residual = found.residual;
             if found.is_solved {
@@ -60,7 +60,7 @@ impl Search<'_> {
 
     /// The Newton step, in units of motion: by differences.
     fn step(&mut self, start: &Solution, motion: [f64; 3], lacking: [f64; 3], units: [f64; 3]) -> Option<[f64; 3]> {
-        let (mut slopes, mut solution) = ([[0.0; 3]; 3], std::mem::take(&mut self.work.beside));
+        let (mut slopes, mut solution) = ([[0.0; 3]; 3], std::mem::take(&mut self.buffers.beside));
         let mut found = true;
         for k in self.problem.driven() {
             let by = CHANGE * (motion[k].abs() + units[k]);
@@ -72,7 +72,7 @@ impl Search<'_> {
             let there = there.unwrap_or(lacking);
             (0..3).for_each(|row| slopes[row][k] = (lacking[row] - there[row]) / by * units[k]);
         }
-        self.work.beside = solution;
+        self.buffers.beside = solution;
         found.then(|| linalg::solve(slopes, lacking, 0.0).0)
     }
 }
@@ -87,10 +87,10 @@ impl Solution {
         problem: &Problem<'_>,
         kernel: &mut TangentialKernel,
         tolerance: f64,
-        work: &mut Work,
+        buffers: &mut NewtonBuffers,
     ) -> Convergence {
         let tight = (1e-3 * tolerance).max(MOST_ACCURATE.min(tolerance));
-        let mut search = Search { problem, kernel, work, tolerance: tight, convergence: Convergence::default() };
+        let mut search = Search { problem, kernel, buffers, tolerance: tight, convergence: Convergence::default() };
         // a displacement that friction could cause, and the angle that moves the mean cell by as much
         let largest = problem.touching().map(|i| problem.bound[i]).fold(0.0, f64::max);
         let natural = problem.compliance * problem.side * largest;
@@ -104,7 +104,7 @@ impl Solution {
                 self.motion = motion;
                 return Convergence { is_solved: true, ..search.convergence };
             }
-            search.work.kept.clone_from(self);
+            search.buffers.kept.clone_from(self);
             let Some(step) = search.step(self, motion, lacking, units) else { return search.convergence };
             let mut share = 1.0;
             loop {
@@ -118,7 +118,7 @@ impl Solution {
                 if share < LEAST_SHARE {
                     return search.convergence;
                 }
-                self.clone_from(&search.work.kept);
+                self.clone_from(&search.buffers.kept);
             }
         }
         search.convergence

@@ -8,13 +8,13 @@ use crate::contact::{Builder, Snapshot, Step, StepError, StepReport, TimeRule, V
 use crate::equilibrium::Held;
 use crate::equilibrium::constraints::validate_loads;
 use crate::error::{Error, Refusal, Result, Special, UserError};
-use crate::friction::history::ShearHistory;
+use crate::friction::shear_history::ShearHistory;
 use crate::friction::kernel::{TangentialKernel, TangentialResponse};
 use crate::friction::limit::FrictionLimit;
 use crate::friction::load::{Component, LARGEST, ShearLoad, size};
-use crate::friction::newton::{NEWTON, Work};
+use crate::friction::newton::{NEWTON, NewtonBuffers};
 use crate::friction::problem::{Cell, Problem, Solution, take_motion};
-use crate::friction::region::extent;
+use crate::friction::rectangle::extent;
 use crate::friction::report::{FrictionReport, Outcome};
 use crate::friction::state::State;
 use crate::hereditary::Interpolant;
@@ -67,7 +67,7 @@ pub struct FrictionContact {
     pub(super) unresolved: f64,
     /// Forces and torque of a history below these are none.
     pub(super) least: [f64; 3],
-    pub(super) history_along: Option<ShearHistory>,
+    pub(super) loads_along: Option<ShearHistory>,
     /// A run that was saved and resumed.
     pub(super) saved_run: Option<Arc<SavedRun<Plain>>>,
 }
@@ -83,7 +83,7 @@ pub(super) struct StepFields {
     /// Tractions, averaged over the step.
     mean: Vec<f64>,
     trial: Solution,
-    work: Work,
+    buffers: NewtonBuffers,
 }
 
 /// The error of tractions whose residual stays above what is allowed.
@@ -128,7 +128,7 @@ impl FrictionContact {
             response,
             unresolved: 0.0,
             least: [0.0; 3],
-            history_along: None,
+            loads_along: None,
             saved_run: None,
         })
     }
@@ -168,7 +168,7 @@ impl FrictionContact {
         let normal = &mut self.normal;
         normal.snapshot_into(&mut self.start);
         let loads = [load];
-        let step = Step { cancelled: Some(cancelled), tolerance, ..normal.request_next(dt, &loads)? };
+        let step = Step { cancelled: Some(cancelled), tolerance, ..normal.plan_next_step(dt, &loads)? };
         validate_loads(&normal.scene.ground, step.request())?;
         let length = step.interval.dt;
         let report = normal.take(step)?;
@@ -193,7 +193,7 @@ impl FrictionContact {
         self.bind()?;
         let FrictionContact { kernel, state, step, .. } = self;
         let State { history, solution, motion, region, .. } = state;
-        let StepFields { places, bound, entered, drift, free, mean, trial, work } = step;
+        let StepFields { places, bound, entered, drift, free, mean, trial, buffers } = step;
         let (time, cells) = (normal.time, region.len());
         let area = self.normal.grid().cell_area();
         history.predict(dt, Interpolant::Linear, free);
@@ -219,7 +219,7 @@ impl FrictionContact {
         }
         trial.traction.copy_from_slice(&solution.traction);
         trial.cells.copy_from_slice(&solution.cells);
-        let found = trial.find(&problem, kernel, tolerance, work);
+        let found = trial.find(&problem, kernel, tolerance, buffers);
         let (iterations, residual) = (found.iterations, found.residual);
         if !found.is_solved {
             if problem.is_cancelled() {
@@ -235,10 +235,10 @@ impl FrictionContact {
         }
         // what parts slips as its traction falls
         let parting = (0..cells).filter(|&i| bound[i] == 0.0 && solution.cells[i] != Cell::Apart);
-        problem.gradient(parting, &work.stress, trial.motion, &mut trial.gradient);
+        problem.gradient(parting, &buffers.stress, trial.motion, &mut trial.gradient);
         free.iter_mut().zip(&trial.traction).for_each(|(u, traction)| *u += compliance * traction);
         history.mean_stress(free, mean);
-        let works = problem.works(solution, trial, given, mean, &work.stress);
+        let works = problem.works(solution, trial, given, mean, &buffers.stress);
         state.work.iter_mut().zip(works).for_each(|(work, of_step)| *work += area * of_step);
         state.load_share = 1.0 / factor;
         // beside what friction could cause
@@ -268,7 +268,7 @@ impl FrictionContact {
     pub(super) fn fit_to_region(&mut self) {
         let (grid, region) = (self.normal.grid(), self.state.region);
         let ([_, columns], n) = (grid.cells(), region.len());
-        let StepFields { places, bound, entered, drift, free, mean, trial, work } = &mut self.step;
+        let StepFields { places, bound, entered, drift, free, mean, trial, buffers } = &mut self.step;
         if n > 0 {
             self.kernel = TangentialKernel::new(&self.response, region.cells);
         }
@@ -276,7 +276,7 @@ impl FrictionContact {
         [bound, entered].into_iter().for_each(|field| field.resize(n, 0.0));
         [drift, free, mean].into_iter().for_each(|field| field.resize(2 * n, 0.0));
         trial.resize(n);
-        work.resize(n);
+        buffers.resize(n);
     }
 
     /// Finds the bounds, and the share of the step for which each cell is in contact.

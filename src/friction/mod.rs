@@ -11,7 +11,7 @@
 
 mod by_motion;
 mod contact;
-mod history;
+mod shear_history;
 mod kernel;
 mod limit;
 mod load;
@@ -20,17 +20,17 @@ mod newton;
 mod operator;
 mod preconditioner;
 mod problem;
-mod region;
+mod rectangle;
 mod report;
 mod run;
 #[cfg(feature = "checkpoint")]
 mod saved;
-mod sliding_limit;
+mod load_factor;
 mod snapshot;
 mod state;
 
 pub use contact::FrictionContact;
-pub use history::ShearHistory;
+pub use shear_history::ShearHistory;
 pub use limit::{Coulomb, FrictionLimit, Lesser, Tresca};
 pub use load::{Component, ShearLoad};
 pub use report::{FrictionReport, Outcome};

@@ -7,7 +7,7 @@ use crate::linalg;
 
 /// Buffers of the solver.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Work {
+pub(super) struct NewtonBuffers {
     pub(super) stress: Vec<f64>,
     normals: Vec<[f64; 2]>,
     /// max(−g·n, 0)/r where cells slip: the curvature of the circle.
@@ -31,9 +31,9 @@ pub(super) struct Work {
     pub(super) beside: Solution,
 }
 
-impl Work {
+impl NewtonBuffers {
     pub(super) fn resize(&mut self, n: usize) {
-        let Work { stress, normals, curvature, step, residual, preconditioned, direction, image, modes, drift, .. } =
+        let NewtonBuffers { stress, normals, curvature, step, residual, preconditioned, direction, image, modes, drift, .. } =
             self;
         modes.resize(n);
         [&mut self.kept, &mut self.beside].into_iter().for_each(|solution| solution.resize(n));
@@ -95,7 +95,7 @@ impl Solution {
         problem: &Problem<'_>,
         kernel: &mut TangentialKernel,
         tolerance: f64,
-        work: &mut Work,
+        work: &mut NewtonBuffers,
     ) -> Convergence {
         self.begin(problem);
         work.carries = true;
@@ -123,7 +123,7 @@ impl Solution {
         problem: &Problem<'_>,
         kernel: &mut TangentialKernel,
         tolerance: f64,
-        work: &mut Work,
+        work: &mut NewtonBuffers,
     ) -> Convergence {
         let n = problem.cells();
         let drift =
@@ -144,8 +144,8 @@ impl Solution {
             problem.gradient(problem.touching(), &work.stress, self.motion, &mut self.gradient);
             let stress = problem.touching().map(|i| work.stress[i].abs().max(work.stress[n + i].abs()));
             let scale = (problem.compliance * stress.fold(0.0, f64::max)).max(drift).max(least).max(f64::MIN_POSITIVE);
-            let gaps = problem.gaps(&self.traction);
-            let balance = problem.balance(gaps);
+            let missing_loads = problem.missing_loads(&self.traction);
+            let balance = problem.balance(missing_loads);
             let residual = self.judge(problem, work) / scale;
             let is_solved = residual <= tolerance && balance <= tolerance;
             convergence = Convergence { iterations: iteration, residual: residual.max(balance), is_solved };
@@ -168,8 +168,8 @@ impl Solution {
             } else {
                 NEWTON.forcing.min(residual.max(0.7 * tolerance / residual))
             };
-            let gaps = if balance <= 0.003 * tolerance { [0.0; 3] } else { gaps };
-            if !self.advance(problem, kernel, (gaps, forcing), work) {
+            let missing_loads = if balance <= 0.003 * tolerance { [0.0; 3] } else { missing_loads };
+            if !self.advance(problem, kernel, (missing_loads, forcing), work) {
                 break;
             }
             work.began.fill(false);
@@ -182,7 +182,7 @@ impl Solution {
 
     /// Changes the tractions by the step found last: what leaves its circle slips. Returns whether other cells began
     /// to.
-    fn move_by(&mut self, problem: &Problem<'_>, work: &mut Work) -> bool {
+    fn move_by(&mut self, problem: &Problem<'_>, work: &mut NewtonBuffers) -> bool {
         let (n, step, mut any) = (problem.cells(), &work.step, false);
         for i in problem.touching() {
             let [x, y] = [self.traction[i] + step[i], self.traction[n + i] + step[n + i]];
@@ -202,13 +202,13 @@ impl Solution {
 
     /// Lets the tractions carry the loads again, as those under a rigid body that moves: what projections took away is
     /// given back without a convolution.
-    fn carry(&mut self, problem: &Problem<'_>, work: &mut Work, least: f64) {
+    fn carry(&mut self, problem: &Problem<'_>, work: &mut NewtonBuffers, least: f64) {
         if !(work.carries && work.modes.are_known) {
             return;
         }
         for _ in 0..NEWTON.most_carries {
-            let gaps = problem.gaps(&self.traction);
-            if problem.balance(gaps) <= least {
+            let missing_loads = problem.missing_loads(&self.traction);
+            if problem.balance(missing_loads) <= least {
                 break;
             }
             let free = |i: usize, modes: &Modes| {
@@ -227,7 +227,7 @@ impl Solution {
                     problem.driven().for_each(|b| carried[a][b] += dot(problem.mode(a, i), answers[b]));
                 }
             }
-            let parts = linalg::solve_normal_equations(&carried, gaps, 1e-13);
+            let parts = linalg::solve_normal_equations(&carried, missing_loads, 1e-13);
             for i in problem.touching() {
                 let answers = free(i, &work.modes);
                 let by = [0, 1].map(|axis| (0..3).map(|k| parts[k] * answers[k][axis]).sum::<f64>());
@@ -242,7 +242,7 @@ impl Solution {
 
     /// Finds normals and curvatures, and the largest residual: |g| where cells stick, its tangential part and what
     /// points along τ where they slip.
-    fn judge(&self, problem: &Problem<'_>, work: &mut Work) -> f64 {
+    fn judge(&self, problem: &Problem<'_>, work: &mut NewtonBuffers) -> f64 {
         let n = problem.cells();
         let mut worst = 0.0_f64;
         for i in problem.touching() {
@@ -260,7 +260,7 @@ impl Solution {
     }
 
     /// Lets cells that would slip backwards stick.
-    fn let_stick(&mut self, problem: &Problem<'_>, work: &mut Work, least: f64) {
+    fn let_stick(&mut self, problem: &Problem<'_>, work: &mut NewtonBuffers, least: f64) {
         let n = problem.cells();
         for i in problem.touching() {
             let along = dot([self.gradient[i], self.gradient[n + i]], work.normals[i]);
@@ -294,18 +294,18 @@ impl Solution {
         &mut self,
         problem: &Problem<'_>,
         kernel: &mut TangentialKernel,
-        (gaps, forcing): ([f64; 3], f64),
-        work: &mut Work,
+        (missing_loads, forcing): ([f64; 3], f64),
+        work: &mut NewtonBuffers,
     ) -> bool {
-        let Work { step, residual, preconditioned, direction, image, modes, normals, curvature, .. } = work;
+        let NewtonBuffers { step, residual, preconditioned, direction, image, modes, normals, curvature, .. } = work;
         kernel.fit(&self.cells, curvature, problem.compliance);
         modes.fit(problem, |field| self.restrict(normals, field));
         step.fill(0.0);
         residual.iter_mut().zip(&self.gradient).for_each(|(r, g)| *r = -g);
         self.restrict(normals, residual);
-        if gaps != [0.0; 3] {
+        if missing_loads != [0.0; 3] {
             // meets the loads; what follows stays in the null space
-            modes.meet(gaps, step, |mode, out| kernel.precondition(mode, out, &self.cells, normals));
+            modes.meet(missing_loads, step, |mode, out| kernel.precondition(mode, out, &self.cells, normals));
             self.operate(problem, kernel, step, image, (normals, curvature));
             add(residual, -1.0, image);
         }

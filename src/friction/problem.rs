@@ -74,13 +74,13 @@ impl Problem<'_> {
     }
 
     /// What is missing of each load.
-    pub(super) fn gaps(&self, field: &[f64]) -> [f64; 3] {
+    pub(super) fn missing_loads(&self, field: &[f64]) -> [f64; 3] {
         [0, 1, 2].map(|k| self.wanted[k].map_or(0.0, |wanted| wanted - self.carried(k, field)))
     }
 
     /// The largest of them, over its scale.
-    pub(super) fn balance(&self, gaps: [f64; 3]) -> f64 {
-        self.driven().map(|k| gaps[k].abs() / self.size(k)).fold(0.0, f64::max)
+    pub(super) fn balance(&self, missing_loads: [f64; 3]) -> f64 {
+        self.driven().map(|k| missing_loads[k].abs() / self.size(k)).fold(0.0, f64::max)
     }
 
     /// g of some cells from c K τ.

@@ -9,7 +9,7 @@ use crate::contact::StepReport;
 use crate::error::{Error, Result};
 use crate::fields::Fields;
 use crate::friction::contact::FrictionContact;
-use crate::friction::history::ShearHistory;
+use crate::friction::shear_history::ShearHistory;
 use crate::friction::load::{Component, ShearLoad, size};
 use crate::friction::problem::Cell;
 use crate::friction::report::Outcome;
@@ -65,13 +65,13 @@ impl FrictionContact {
     /// # Ok::<(), Error>(())
     /// ```
     pub fn sheared_by(mut self, history: ShearHistory) -> FrictionContact {
-        self.history_along = Some(history);
+        self.loads_along = Some(history);
         self
     }
 
     /// What acts along the surface at the end of a step of length `dt` to a `time`: at a jump of no time, else before it.
     fn sheared_at(&self, time: f64, dt: f64) -> Result<ShearLoad> {
-        match &self.history_along {
+        match &self.loads_along {
             None => Ok(ShearLoad::force([0.0; 2])),
             Some(history) if dt > 0.0 => history.load(self.least, |history| history.checked_before(time, true)),
             Some(history) => history.load(self.least, |history| history.checked_at(time, true)),
@@ -213,7 +213,7 @@ impl Contact for FrictionContact {
     }
 
     fn lateral(&self) -> &[Arc<dyn LoadHistory>] {
-        self.history_along.as_ref().map_or(&[], |history| &history.components[..])
+        self.loads_along.as_ref().map_or(&[], |history| &history.components[..])
     }
 
     fn untouched(&self) -> Option<f64> {

@@ -7,8 +7,8 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use crate::contact::ViscoelasticContact;
-use crate::contact::checkpoint::scene::require;
-use crate::contact::checkpoint::{Besides, Check, NO_RUN, malformed};
+use crate::contact::checkpoint::fingerprint::require_same_scene;
+use crate::contact::checkpoint::{Attached, Check, NO_RUN, malformed};
 use crate::error::Result;
 use crate::friction::contact::FrictionContact;
 use crate::friction::state::State;
@@ -27,7 +27,7 @@ struct Saved<'a> {
     run: Option<SavedRun<Plain>>,
 }
 
-impl Besides for Saved<'_> {
+impl Attached for Saved<'_> {
     const KIND: &'static str = "with friction in space";
 }
 
@@ -91,7 +91,7 @@ impl FrictionContact {
         let (own, friction, cells) = (&self.state, [("friction", self.friction())], self.normal.grid().cells());
         let saved = read(&mut self.normal, &|saved: Option<&Saved<'static>>| {
             let Some(Saved { friction: found, state, run }) = saved else { return Err(malformed("no friction")) };
-            require(std::slice::from_ref(found), &friction)?;
+            require_same_scene(std::slice::from_ref(found), &friction)?;
             if !state.fits(own, cells) {
                 return Err(malformed("tractions that no contact has"));
             }

@@ -50,7 +50,7 @@ impl Clone for FrictionContact {
             state: self.state.clone(),
             kernel: self.kernel.clone(),
             step: self.step.clone(),
-            history_along: self.history_along.clone(),
+            loads_along: self.loads_along.clone(),
             saved_run: self.saved_run.clone(),
             ..*self
         }
@@ -65,7 +65,7 @@ impl Clone for FrictionContact {
         self.normal.go_to(&other.normal.computation.state);
         self.take_state(&other.state);
         (self.tolerance, self.unresolved, self.least) = (other.tolerance, other.unresolved, other.least);
-        self.history_along.clone_from(&other.history_along);
+        self.loads_along.clone_from(&other.loads_along);
         self.saved_run.clone_from(&other.saved_run);
     }
 }

@@ -1,7 +1,7 @@
 //! What steps change besides the normal contact.
 
 use crate::friction::problem::{Cell, Solution};
-use crate::friction::region::Rectangle;
+use crate::friction::rectangle::Rectangle;
 use crate::hereditary::{ExponentialRule, GroupHistory};
 
 /// Tractions along the surface and their past, on the rectangle of cells on which they have acted.

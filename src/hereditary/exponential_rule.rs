@@ -55,9 +55,9 @@ pub(crate) struct ExponentialRule {
     /// `spans`, `known` and `lacking` at the start of the last step.
     at_start: ([f64; 2], usize, usize),
     /// Of the step predicted last.
-    pub(super) tried: Weights,
+    pub(super) tried: StepWeights,
     /// Of the step committed last, which the fields take in with the next prediction.
-    pub(super) committed: Weights,
+    pub(super) committed: StepWeights,
     /// The maximum displacement so far.
     pub(super) greatest: f64,
     /// How often a prediction was made again, because u_old was negative somewhere.
@@ -76,7 +76,7 @@ clone_by_fields! { ExponentialRule {
 /// What a step does to a field that follows the rule.
 #[derive(Debug, Default, PartialEq)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct Weights {
+pub(crate) struct StepWeights {
     /// Length of the step.
     pub(super) dt: f64,
     /// Degree of u on the step.
@@ -103,7 +103,7 @@ pub(crate) struct Weights {
     known: usize,
 }
 
-clone_by_fields! { Weights {
+clone_by_fields! { StepWeights {
     dt, degree, corrects_last, corrected_by_next, c, past, branches, terms, ratios, defects, answer, span, known,
 } }
 
@@ -127,7 +127,7 @@ impl ExponentialRule {
         let relaxation = creep.relaxation();
         let branches = vec![[0.0; 4]; relaxation.terms().len()];
         let relaxed = RelaxedSteps::new(branches.len());
-        let weights = Weights { degree: 1, branches, span: 1.0, ..Weights::default() };
+        let weights = StepWeights { degree: 1, branches, span: 1.0, ..StepWeights::default() };
         ExponentialRule {
             relaxation,
             spans: [0.0; 2],
@@ -236,7 +236,7 @@ impl ExponentialRule {
     /// Where the steps before do not determine how u continues ([`Self::missing`]): the response of the step predicted last to a unit of v
     /// that acts at once from its start on an undisturbed body, and of one that grows from 0.
     pub(crate) fn first_step_responses(&self) -> Option<[f64; 2]> {
-        let Weights { dt, c, branches, .. } = &self.tried;
+        let StepWeights { dt, c, branches, .. } = &self.tried;
         if *dt == 0.0 || self.missing().is_some() {
             return None;
         }
@@ -303,7 +303,7 @@ impl ExponentialRule {
 
     /// The weights of the same step with less degree: linear, then without the correction of the step before.
     pub(super) fn reduce_order(&mut self) {
-        let Weights { dt, degree, corrects_last, corrected_by_next, .. } = self.tried;
+        let StepWeights { dt, degree, corrects_last, corrected_by_next, .. } = self.tried;
         self.weigh_as(dt, 1, corrects_last && degree > 1, corrected_by_next);
         self.repeated += 1;
     }

@@ -2,7 +2,7 @@
 
 use pulp::{Arch, Simd, WithSimd};
 
-use crate::hereditary::exponential_rule::{ExponentialRule, Interpolant, Weights};
+use crate::hereditary::exponential_rule::{ExponentialRule, Interpolant, StepWeights};
 
 /// Rounding of a displacement between 0 and 1.
 const ROUNDING: f64 = 1e-12;
@@ -42,7 +42,7 @@ impl Past {
 
     /// Writes the displacements at the end of the step that the rule weighed last, if no stress acts any more.
     fn free_displacements(&self, rule: &ExponentialRule, free: &mut Vec<f64>) {
-        let Weights { c, past: [kept, of_change, of_bend], branches, .. } = &rule.tried;
+        let StepWeights { c, past: [kept, of_change, of_bend], branches, .. } = &rule.tried;
         let [displacements, changes, bends, stresses @ ..] = &self.columns[..] else { return };
         free.clone_from(displacements);
         combine(free, *kept, [*of_change, *of_bend, 0.0], [changes, bends, bends]);

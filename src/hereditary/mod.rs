@@ -7,7 +7,8 @@
 //!
 //! with one number c, the compliance of the step, and one field u_old. The contact problem of the step is then the
 //! problem of an elastic body. [`History`] is the one interface to this: a step predicts c and u_old, responds to a
-//! pressure, and is committed when it is accepted. Two rules are behind it:
+//! pressure, and is committed when it is accepted. One rule is behind it, of which the error
+//! of a step is estimated, too (`time_error`); bodies that move under the grid apply it to sources:
 //!
 //! * [`ExponentialRule`]: a recursion with one field per relaxation time, updated in place; stable for steps of any
 //!   length. Within a step u is a polynomial of time, see [`Interpolant`].
@@ -33,9 +34,9 @@ mod moving_frame;
 mod remembered_field;
 #[cfg(test)]
 mod rule_tests;
-mod step_context;
+mod outlook;
 mod time_error;
-mod weights;
+mod error_factors;
 
 #[cfg(feature = "energies")]
 pub(crate) use branch_energies::BranchEnergies;
@@ -48,6 +49,6 @@ pub(crate) use group_history::GroupHistory;
 pub(crate) use history::History;
 pub(crate) use interval::{HistoryInputs, Interval};
 pub(crate) use lasting_error::LastingError;
-pub(crate) use step_context::{Meeting, StepContext};
+pub(crate) use outlook::{Meeting, Outlook};
 pub(crate) use time_error::{ErrorMeasure, TimeError};
-pub(crate) use weights::WEIGHTS;
+pub(crate) use error_factors::ERROR_FACTORS;

@@ -1,6 +1,6 @@
 //! A field that follows the recursion of the displacement, with the memory of its past.
 
-use crate::hereditary::exponential_rule::{ExponentialRule, Weights};
+use crate::hereditary::exponential_rule::{ExponentialRule, StepWeights};
 use crate::hereditary::field::{BLOCK, Field, Role, change};
 use crate::parallel::{BAND_CELLS, Rows, for_each_band};
 use crate::sum::greatest;
@@ -126,7 +126,7 @@ impl RememberedField {
 
     /// Takes in the step committed last, if it waits, and predicts the step of weights `tried`, if any: then the
     /// trial is u_old.
-    fn advance(&mut self, rule: &ExponentialRule, tried: Option<&Weights>) {
+    fn advance(&mut self, rule: &ExponentialRule, tried: Option<&StepWeights>) {
         self.keep(rule.kept());
         let RememberedField { branches, relaxing, differences, waiting, now, trial, .. } = self;
         let (branches, waiting) = (*branches, std::mem::take(waiting));
@@ -207,7 +207,7 @@ impl RememberedField {
 
     /// Calls `take` with c Σ e^(−z_i) q_i less the share of the differences, for each cell that is `wanted`; after
     /// [`RememberedField::predict`].
-    pub(super) fn recovery(&self, tried: &Weights, wanted: impl Fn(usize) -> bool, mut take: impl FnMut(usize, f64)) {
+    pub(super) fn recovery(&self, tried: &StepWeights, wanted: impl Fn(usize) -> bool, mut take: impl FnMut(usize, f64)) {
         let [first, second] = self.differences();
         let mut blocks = self.relaxing.chunks((BLOCK * self.branches).max(1));
         for start in (0..self.now.len()).step_by(BLOCK) {
@@ -224,7 +224,7 @@ impl RememberedField {
 
 /// Finds the differences over the step committed last, from `old` to `new`, and keeps as many as are kept.
 fn take_differences(
-    committed: &Weights,
+    committed: &StepWeights,
     old: &[f64],
     new: &[f64],
     first: &mut [f64],

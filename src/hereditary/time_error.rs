@@ -6,8 +6,8 @@ use crate::hereditary::error_weight::Weight;
 use crate::hereditary::exponential_rule::ExponentialRule;
 use crate::hereditary::history::History;
 use crate::hereditary::kink::Kinks;
-use crate::hereditary::step_context::{Meeting, StepContext};
-use crate::hereditary::weights::WEIGHTS;
+use crate::hereditary::outlook::{Meeting, Outlook};
+use crate::hereditary::error_factors::ERROR_FACTORS;
 use crate::parallel::Rows;
 use crate::sum::{ROUNDING, add, greatest, named_sums};
 
@@ -41,7 +41,7 @@ pub(crate) struct ErrorMeasure<'a> {
     /// The compliance in series with the bodies as they meet again ([`Meeting::give`]), 0 where a motion is given.
     pub(crate) give: f64,
     /// The run that the step belongs to.
-    pub(crate) context: &'a StepContext,
+    pub(crate) context: &'a Outlook,
 }
 
 impl ErrorMeasure<'_> {
@@ -113,8 +113,8 @@ impl History {
         let scales = [0, 1].map(|which| sizes[which].max(measure.least[which]));
         let Defect { signed, smooth, kinks, surface: [surface, of_surface] } =
             sums.defect(rule, context.resolution, context.is_last);
-        let kinks = if measure.from_rest { WEIGHTS.from_rest * kinks } else { kinks };
-        let edge = if rule.has_dashpot() { WEIGHTS.edge } else { 1.0 };
+        let kinks = if measure.from_rest { ERROR_FACTORS.from_rest * kinks } else { kinks };
+        let edge = if rule.has_dashpot() { ERROR_FACTORS.edge } else { 1.0 };
         // bodies apart have no force that could be wrong, but a surface
         let matters = if pressed { measure.matters } else { [1.0, 0.0] };
         let whole =
@@ -125,7 +125,7 @@ impl History {
         let growth = 1.0 + context.agreement * (measure.amplification - 1.0);
         let kinks_of_u = (edge * kinks).max(sums.of_leaving(rule));
         let of_u = rule.compliance() * kinks_of_u.max(growth * smooth);
-        let of_v = (WEIGHTS.edge * kinks).max(smooth);
+        let of_v = (ERROR_FACTORS.edge * kinks).max(smooth);
         let error_of_u = if matters[0] > 0.0 { relative(of_u, scales[0]) } else { 0.0 };
         let error_of_v = if matters[1] > 0.0 { matters[1] * relative(of_v, scales[1]) } else { 0.0 };
         let [of_force, of_approach] = measure.of_meeting(rule);
@@ -138,7 +138,7 @@ impl History {
             relative: error.max(error_on_return),
             by_kinks: error >= error_on_return
                 && error > error_on_switch
-                && if error_of_u > error_of_v { kinks_of_u > growth * smooth } else { WEIGHTS.edge * kinks > smooth },
+                && if error_of_u > error_of_v { kinks_of_u > growth * smooth } else { ERROR_FACTORS.edge * kinks > smooth },
             sizes: if pressed { sizes } else { [0.0; 2] },
             defect: [signed, smooth],
             surface,
@@ -273,11 +273,11 @@ impl Sums {
 
     fn defect(&self, rule: &ExponentialRule, resolution: f64, is_last: bool) -> Defect {
         let scale = match rule.missing() {
-            Some((_, missing)) if rule.corrects() && rule.has_dashpot() => WEIGHTS.corrected_of_dashpot * missing,
-            Some((_, missing)) if rule.corrects() && !is_last => WEIGHTS.corrected * missing,
+            Some((_, missing)) if rule.corrects() && rule.has_dashpot() => ERROR_FACTORS.corrected_of_dashpot * missing,
+            Some((_, missing)) if rule.corrects() && !is_last => ERROR_FACTORS.corrected * missing,
             Some((_, missing)) if rule.corrects() => missing,
             // the greatest of |s (s − Δ)| is Δ²/4, as in the error of u
-            Some(_) => WEIGHTS.not_corrected * 0.25 / rule.tried.span / rule.compliance(),
+            Some(_) => ERROR_FACTORS.not_corrected * 0.25 / rule.tried.span / rule.compliance(),
             None => 0.0,
         };
         let counts = !rule.has_dashpot() || rule.tried.dt > resolution;

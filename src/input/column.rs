@@ -34,7 +34,7 @@ pub struct WantedColumn {
     pub name: &'static str,
     /// First words or symbols of its headings, in lower case.
     pub words: &'static [&'static str],
-    /// Parts of the headings of other columns that begin so.
+    /// Parts that a heading must not contain: it then belongs to another column that begins alike.
     pub others: &'static [&'static str],
     /// Its quantity.
     pub quantity: Quantity,

@@ -2,6 +2,13 @@
 //!
 //! Readers of one kind of data ([`Measurements::from_csv`](crate::rheology::Measurements::from_csv)) use a
 //! [`TextTable`], which they also accept; so do other crates, by [`TextTable::find`].
+//! Binary and image formats of height maps have readers of their own in `geometry/surfaces/height_map/read`.
+//!
+//! | to add | in |
+//! |---|---|
+//! | a unit | `unit::UNITS` |
+//! | a word of a heading | the `WantedColumn` of its reader: `rheology/table/columns.rs` and `isotherm.rs`, `xyz.rs`, identify |
+//! | a notation of headings | `heading.rs`, `sections.rs` |
 
 mod column;
 mod encoding;

@@ -36,7 +36,7 @@ struct Shared {
     group: Arc<dyn Ranks>,
     /// Kept, so that no sum allocates that is no longer than an earlier one.
     buffers: Mutex<Buffers>,
-    /// Why a call of the group failed. Until that is returned ([`Rows::together`]), no other call is made.
+    /// Why a call of the group failed. Until that is returned ([`Rows::or_loss`]), no other call is made.
     lost: Mutex<Option<RanksError>>,
 }
 

@@ -11,6 +11,8 @@
 //! | quantities over time | [`Chart::history`] |
 //! | any curves, a family coloured by its parameter | [`Chart`], [`Chart::add_family`] |
 //! | an animation of a run | [`Animation`] |
+//! | a convergence study | `StudyResult::chart` |
+//! | a sweep of steady motions | `SlidingTable::chart` |
 //!
 //! ```
 //! use viscocontact::plot::{Animation, Chart, Map, Quantity};

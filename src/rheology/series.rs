@@ -93,7 +93,7 @@ impl CreepSeries {
         }
         let spectrum = CreepSpectrum::new(series.constant, series.slope, &series.terms)?;
         let known_until = last.min(rheology.known_until());
-        crate::events::fitted([first, last], series.terms.len(), report.max_misfit());
+        crate::traced::fitted([first, last], series.terms.len(), report.max_misfit());
         let [from, to] = rheology.measured();
         let measured = [first.max(from), known_until.min(to)];
         Ok(CreepSeries { spectrum, report, known_until, measured })

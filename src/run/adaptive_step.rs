@@ -4,8 +4,8 @@ use crate::contact::step::Attempt;
 use crate::contact::step::error_in_time::error_in_time;
 use crate::contact::{Step, StepReport, ViscoelasticContact};
 use crate::error::{Error, ErrorKind, Result};
-use crate::events;
-use crate::hereditary::{StepContext, TimeError};
+use crate::traced;
+use crate::hereditary::{Outlook, TimeError};
 use crate::load::Load;
 use crate::run::Contact;
 use crate::run::control::Course;
@@ -128,7 +128,7 @@ impl StepSearch<'_> {
         &mut self,
         contact: &mut ViscoelasticContact,
         step: &mut Step<'_>,
-        outlook: &StepContext,
+        outlook: &Outlook,
         [straying, apart]: [f64; 2],
     ) -> Result<Tried> {
         let StepSearch { control, wasted, .. } = self;
@@ -152,7 +152,7 @@ impl StepSearch<'_> {
 
     /// Whether a shorter step may succeed where this one has failed. Where the bodies separate within it, a shorter one
     /// shows when.
-    fn may_be_shorter(&mut self, error: &Error, outlook: &StepContext) -> bool {
+    fn may_be_shorter(&mut self, error: &Error, outlook: &Outlook) -> bool {
         if is_pulled_off(error) {
             return self.tried - self.now > outlook.resolution;
         }
@@ -168,7 +168,7 @@ impl StepSearch<'_> {
         contact: &mut ViscoelasticContact,
         mut proposal: Proposal,
         tried: &mut Tried,
-        outlook: &StepContext,
+        outlook: &Outlook,
     ) -> Option<bool> {
         let StepSearch { control, course, wasted, .. } = self;
         let ViscoelasticContact { scene, computation, .. } = &*contact;
@@ -194,7 +194,7 @@ impl StepSearch<'_> {
         if control.judge(proposal, self.dt, error.relative) || proposal.unresolved && error.relative.is_finite() {
             return Some(jumps);
         }
-        events::rejected(self.tried, length, error.relative, control.tolerance);
+        traced::rejected(self.tried, length, error.relative, control.tolerance);
         control.rejected += 1;
         computed.add_work(wasted);
         if let Some(divided) = control.halves.as_ref().filter(|_| tried.halves.is_some()) {

@@ -11,6 +11,6 @@ pub(super) struct Autosave {
     pub(super) path: PathBuf,
     pub(super) every: Duration,
     pub(super) last: Instant,
-    /// Report of a step after which the file could not be written; `None` in it of the end of the run.
+    /// What the next call returns, since the save after this step failed: `Some(None)` if the run was over.
     pub(super) unreported: Option<Option<StepReport>>,
 }

@@ -1,4 +1,5 @@
-//! What leads a contact along a run.
+//! The trait by which a run advances a contact of any kind: in space [`StepControl`](super::step_control::StepControl),
+//! else [`Doubled`](super::doubled::Doubled).
 
 use std::fmt::Debug;
 #[cfg(feature = "checkpoint")]
@@ -60,7 +61,7 @@ pub struct FieldReport {
 /// module is private.
 pub trait Control<C>: Debug + Send + Sync {
     /// Whether these loads act; false if it is not known.
-    fn bears(&self, contact: &C, loads: &[Load]) -> bool;
+    fn loads_act(&self, contact: &C, loads: &[Load]) -> bool;
 
     /// Takes the next step. Differences of steps start anew where it ends at a corner.
     fn advance(&mut self, contact: &mut C, course: &Course<'_>) -> Result<StepReport>;

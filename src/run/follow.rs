@@ -16,13 +16,14 @@ use crate::run::histories::{Histories, RunHistory};
 use crate::run::progress::{Progress, RunProgress, Stepping, rounding};
 use crate::run::{Contact, OwnedOrBorrowed};
 
-/// Times up to here are that of the end of a step.
+/// Times up to here count as the `time` at which a step ended.
 fn covered_by(time: f64) -> f64 {
     time + rounding(time)
 }
 
-/// Times beyond the ends of a run by this part of them are the ends: 10^3 by a power of ten in steps.
-const COMPUTED: f64 = 1e-12;
+/// A time beyond an end of the run by no more than this part of itself counts as that end: users compute times, as
+/// 10³ from powers of ten, with rounding.
+const ROUNDING_OF_GIVEN: f64 = 1e-12;
 
 /// A run along a load history, made by [`Contact::follow`]. Each call of [`Run::next_step`] takes
 /// one step.
@@ -226,7 +227,7 @@ impl<'a, C: Contact> Run<'a, C> {
         let (from, to) = (self.progress.start, self.until);
         times.map_given(|time| {
             let inside = time.clamp(from, to.max(from));
-            let is_near = (time - inside).abs() <= COMPUTED * inside.abs();
+            let is_near = (time - inside).abs() <= ROUNDING_OF_GIVEN * inside.abs();
             // times and ends that are not finite have errors of their own
             let is_allowed = is_near || !time.is_finite() || !to.is_finite();
             let allowed = "between the start and the end of the run";
@@ -313,7 +314,7 @@ impl<'a, C: Contact> Run<'a, C> {
         let Run { contact, histories, loads, until, progress, control, cancelled, known, .. } = self;
         let (now, until) = (contact.time(), *until);
         histories.loads(loads, &**contact, |history, pulls| history.checked_at(now, pulls))?;
-        let jumps = !control.bears(contact, loads);
+        let jumps = !control.loads_act(contact, loads);
         if !jumps && now >= until {
             return Ok(None);
         }

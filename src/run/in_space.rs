@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::contact::{Step, StepReport, ViscoelasticContact};
 use crate::error::Result;
 use crate::fields::Fields;
-use crate::hereditary::{StepContext, TimeError};
+use crate::hereditary::{Outlook, TimeError};
 use crate::load::Load;
 use crate::rheology::TemperatureHistory;
 use crate::run::Contact;
@@ -90,7 +90,7 @@ impl Contact for ViscoelasticContact {
 }
 
 impl Control<ViscoelasticContact> for StepControl {
-    fn bears(&self, contact: &ViscoelasticContact, loads: &[Load]) -> bool {
+    fn loads_act(&self, contact: &ViscoelasticContact, loads: &[Load]) -> bool {
         contact.computation.state.held.loads == loads
     }
 
@@ -170,7 +170,7 @@ impl ViscoelasticContact {
         let step = Step { cancelled: course.cancelled, ..self.request(time, dt, loads, tolerance)? };
         let state = &self.computation.state;
         control.look_ahead(&self.scene, state, course.histories, course.until)?;
-        let (report, error) = self.take_expecting(step, &StepContext::default())?;
+        let (report, error) = self.take_expecting(step, &Outlook::default())?;
         if time == course.corner {
             self.computation.state.history.reset_differences();
         }

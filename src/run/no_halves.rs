@@ -3,7 +3,7 @@
 use crate::contact::step::Attempt;
 use crate::contact::{State, Step, ViscoelasticContact};
 use crate::error::{Error, Result, missing};
-use crate::hereditary::{StepContext, TimeError};
+use crate::hereditary::{Outlook, TimeError};
 use crate::run::adaptive_step::{StepSearch, Tried};
 
 /// The step that was divided last: none is.
@@ -26,7 +26,7 @@ impl StepSearch<'_> {
         _: &mut ViscoelasticContact,
         _: Attempt,
         _: &mut Step<'_>,
-        _: &StepContext,
+        _: &Outlook,
         _: TimeError,
         _: f64,
     ) -> Result<Tried> {

@@ -5,7 +5,7 @@ use crate::equilibrium::DEFAULT_TOLERANCE;
 use crate::equilibrium::pressed::Pressed;
 use crate::error::Result;
 use crate::extent::Extent;
-use crate::hereditary::{Interval, Meeting, StepContext, WEIGHTS};
+use crate::hereditary::{Interval, Meeting, Outlook, ERROR_FACTORS};
 use crate::run::control::Course;
 use crate::run::step_control::StepControl;
 use crate::run::track::is_held;
@@ -32,7 +32,7 @@ impl StepControl {
 
     /// Tolerance of the solver in a step, at most its own: where a given approach is to come, the bodies respond to
     /// an error of u by more than in the steps that leave it.
-    pub(super) fn solver_tolerance_before_meeting(&self, scene: &Scene, step: &Step<'_>, outlook: &StepContext) -> f64 {
+    pub(super) fn solver_tolerance_before_meeting(&self, scene: &Scene, step: &Step<'_>, outlook: &Outlook) -> f64 {
         let Step { interval: Interval { time, dt, .. }, tolerance, .. } = *step;
         let stiffness = self.tracks.iter().map(|track| track.scale.stiffness_after(time)).fold(0.0, f64::max);
         let answer = SOLVER_ON_MEETING * stiffness * scene.material.contact_compliance(dt);
@@ -47,20 +47,20 @@ impl StepControl {
         step: &Step<'_>,
         Course { histories, until, .. }: &Course<'_>,
         kink: f64,
-    ) -> Result<StepContext> {
+    ) -> Result<Outlook> {
         let Interval { time, reduced, .. } = step.interval;
         let bodies = || self.tracks.iter().zip(step.loads);
         let age = reduced - clock.undisturbed_until;
         let end = scene.reduced_time(clock, kink.min(*until))?;
         let span = end - self.since;
-        let resolution = WEIGHTS.shortest * self.tolerance * span;
+        let resolution = ERROR_FACTORS.shortest * self.tolerance * span;
         let on_switch = self.on_switch(scene, step.interval, age, resolution)?;
         let soon = 1.0 / scene.material.contact_compliance(resolution);
         let meetings = bodies().map(|(track, load)| track.scale.coming_back(scene, load, age, time));
         let meeting = meetings.reduce(Meeting::worst).unwrap_or(Meeting::NONE);
         let expected = bodies().map(|(track, load)| track.scale.expected(scene, load, age));
         let greatest = || bodies().map(|(track, _)| track.scale.greatest_potential()).fold(0.0, f64::max);
-        Ok(StepContext {
+        Ok(Outlook {
             expected: expected.fold([0.0; 2], |[a, b], [c, d]| [f64::max(a, c), f64::max(b, d)]),
             meeting: Meeting { stiffness: meeting.stiffness.max(soon), ..meeting },
             lasting: self.past.lasting(),
@@ -70,7 +70,7 @@ impl StepControl {
             agreement: self.past.agreement(),
             steps: self.past.count() + 1.0,
             resolution,
-            beginning: WEIGHTS.shortest * self.tolerance * span.min(self.past.shortest_time()),
+            beginning: ERROR_FACTORS.shortest * self.tolerance * span.min(self.past.shortest_time()),
             length_is_given: false,
         })
     }
@@ -88,7 +88,7 @@ impl StepControl {
         let compliance = |t: f64| scene.material.contact_compliance(t);
         let glassy = if compliance(0.0) > 0.0 { compliance(0.0) } else { compliance(touch) };
         let responses = [dt, age].map(|length| (compliance(left + length) - compliance(left)) / glassy);
-        Ok(responses.map(|response| response * (WEIGHTS.most_on_switch / responses[1]).min(1.0)))
+        Ok(responses.map(|response| response * (ERROR_FACTORS.most_on_switch / responses[1]).min(1.0)))
     }
 }
 
@@ -100,7 +100,7 @@ pub(super) fn excess(scene: &Scene, tried: &Computation, dt: f64) -> f64 {
     let clock = &tried.state.clock;
     let corner = scene.temperature.as_ref().and_then(|history| history.next_corner(clock.time.next_down()));
     let is_turn = clock.last_dt > 0.0 && corner == Some(clock.time);
-    let of_turn = if is_turn { WEIGHTS.at_turn * (clock.last_dt / dt).max(1.0) } else { 1.0 };
+    let of_turn = if is_turn { ERROR_FACTORS.at_turn * (clock.last_dt / dt).max(1.0) } else { 1.0 };
     let tilts = tried.trial.free.iter().any(Freedom::tilts);
     let Pressed { cells, reach, .. } = if tilts { tried.pressed(scene) } else { Pressed::default() };
     let leave = cells < tried.state.held.current.contact_cells;

@@ -1,4 +1,4 @@
-//! The size of the loads and displacements of a run.
+//! What the whole history tells beforehand: the size of loads and displacements, and when it bends, rises and switches.
 
 use crate::contact::{Scene, State};
 use crate::equilibrium::window::placement::resting_depth;

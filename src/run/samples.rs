@@ -1,4 +1,4 @@
-//! Times of a run at which steps end or states are sampled.
+//! Samples of a run: the contact at any time within its last step.
 
 use std::borrow::Cow;
 

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use crate::contact::checkpoint::{Besides, NO_RUN, malformed};
+use crate::contact::checkpoint::{Attached, NO_RUN, malformed};
 use crate::contact::{StepReport, ViscoelasticContact};
 use crate::error::{Refusal, Result};
 use crate::run::Contact;
@@ -177,7 +177,7 @@ impl<C: Contact> Run<'_, C> {
     }
 }
 
-impl Besides for (Progress, StepControl) {
+impl Attached for (Progress, StepControl) {
     const KIND: &'static str = "in space";
 }
 

@@ -72,7 +72,7 @@ impl StatesContact {
         if !(is_line || has(0.0)) || !(has(0.5) || material.is_pair()?) {
             return Err(other_kernel());
         }
-        self.rubbing(coefficient, 1.0)
+        self.with_coulomb(coefficient, 1.0)
     }
 
     /// [`StatesContact::with_friction`] of any constant Poisson's ratio, as an estimate: as if tangential kernels were
@@ -96,10 +96,10 @@ impl StatesContact {
         }
         // 3/4 at ν = −1 to 3/2 at ν = ½, unless the sums are no numbers
         let ratio = Some(sums[0] / sums[1]).filter(|ratio| (0.5..2.0).contains(ratio)).ok_or_else(other_kernel)?;
-        self.rubbing(coefficient, ratio)
+        self.with_coulomb(coefficient, ratio)
     }
 
-    fn rubbing(mut self, coefficient: f64, ratio: f64) -> Result<StatesContact> {
+    fn with_coulomb(mut self, coefficient: f64, ratio: f64) -> Result<StatesContact> {
         let allowed = "above 0, at most 1e6";
         within("coefficient of friction", coefficient, coefficient > 0.0 && coefficient <= 1e6, allowed)?;
         self = self.with_interpolant(Interpolant::Linear);

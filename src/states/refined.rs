@@ -8,7 +8,7 @@ use crate::contact::ViscoelasticContact;
 use crate::equilibrium::Ground;
 use crate::error::{Error, Result};
 use crate::fields::{Fields, KeptFields};
-use crate::hereditary::{Interpolant, StepContext};
+use crate::hereditary::{Interpolant, Outlook};
 use crate::load::{Load, LoadHistory};
 use crate::states::repeated::REPEATED;
 
@@ -169,7 +169,7 @@ fn take(
     let loads = [load];
     let mut request = contact.request(end, end - contact.time(), &loads, contact.settings().tolerance)?;
     (request.interval.interpolant, request.cancelled) = (interpolant, cancelled);
-    contact.take_expecting(request, &StepContext::default())?;
+    contact.take_expecting(request, &Outlook::default())?;
     if is_corner {
         contact.computation.state.history.reset_differences();
     }

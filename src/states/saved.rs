@@ -8,8 +8,8 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use crate::contact::checkpoint::format::damaged;
-use crate::contact::checkpoint::format::{Input, Output};
-use crate::contact::checkpoint::scene::{of_rule, of_text};
+use crate::contact::checkpoint::format::{CheckpointReader, CheckpointWriter};
+use crate::contact::checkpoint::fingerprint::{of_rule, of_debug_text};
 use crate::contact::checkpoint::{NO_RUN, check_clocks, malformed};
 use crate::error::{Error, Refusal, Result};
 use crate::file::{in_memory, replace};
@@ -47,7 +47,7 @@ impl StatesContact {
     pub(super) fn save_with(&self, path: &Path, run: Option<SavedRun<OnLevels>>) -> Result<()> {
         let times = [self.time, self.reduced_time, self.undisturbed_until];
         let saved = Saved { times, prescribed: self.prescribed, levels: Cow::Borrowed(&self.levels), run };
-        replace(path, |out| Output::begin(out, &self.parts(), &saved)?.finish())
+        replace(path, |out| CheckpointWriter::begin(out, &self.parts(), &saved)?.finish())
     }
 
     /// What [`StatesContact::save`] writes, in memory: for pickles, and for messages between processes.
@@ -59,7 +59,7 @@ impl StatesContact {
     pub fn to_bytes(&self) -> Result<Vec<u8>> {
         let times = [self.time, self.reduced_time, self.undisturbed_until];
         let saved = Saved { times, prescribed: self.prescribed, levels: Cow::Borrowed(&self.levels), run: None };
-        in_memory(|out| Output::begin(out, &self.parts(), &saved)?.finish())
+        in_memory(|out| CheckpointWriter::begin(out, &self.parts(), &saved)?.finish())
     }
 
     /// Puts a saved state in the place of this one. The contact must be made of the same states and material, with
@@ -74,7 +74,7 @@ impl StatesContact {
     /// contact is then as it was.
     pub fn resume(&mut self, path: impl AsRef<Path>) -> Result<()> {
         let path = path.as_ref();
-        self.resume_from(path, Input::open(path))
+        self.resume_from(path, CheckpointReader::open(path))
     }
 
     /// [`StatesContact::resume`] from the bytes of [`StatesContact::to_bytes`], or of a file.
@@ -84,10 +84,10 @@ impl StatesContact {
     /// # Errors
     /// As [`StatesContact::resume`].
     pub fn resume_bytes(&mut self, bytes: &[u8]) -> Result<()> {
-        self.resume_from(Path::new("bytes in memory"), Input::begin(Cursor::new(bytes)))
+        self.resume_from(Path::new("bytes in memory"), CheckpointReader::begin(Cursor::new(bytes)))
     }
 
-    fn resume_from(&mut self, path: &Path, file: Result<Input<impl Read + Seek>, Refusal>) -> Result<()> {
+    fn resume_from(&mut self, path: &Path, file: Result<CheckpointReader<impl Read + Seek>, Refusal>) -> Result<()> {
         let saved = file.and_then(|file| self.read(file));
         let saved = saved.map_err(|cause| Error::Checkpoint { path: path.to_owned(), cause })?;
         [self.time, self.reduced_time, self.undisturbed_until] = saved.times;
@@ -96,7 +96,7 @@ impl StatesContact {
         Ok(())
     }
 
-    fn read(&self, mut file: Input<impl Read + Seek>) -> Result<Saved<'static>, Refusal> {
+    fn read(&self, mut file: CheckpointReader<impl Read + Seek>) -> Result<Saved<'static>, Refusal> {
         if !file.is_intact() {
             return Err(damaged());
         }
@@ -121,12 +121,12 @@ impl StatesContact {
     fn parts(&self) -> [(&'static str, Vec<f64>); 6] {
         let ElasticStates { states, rest, tilt, .. } = &*self.scene.swept;
         [
-            ("kind of contact", of_text(&"on elastic states")),
-            ("elastic states", of_text(&(states, rest, tilt))),
-            ("time rule", of_text(&self.scene.interpolant)),
+            ("kind of contact", of_debug_text(&"on elastic states")),
+            ("elastic states", of_debug_text(&(states, rest, tilt))),
+            ("time rule", of_debug_text(&self.scene.interpolant)),
             ("material", of_rule(self.levels.history.rule())),
-            ("temperature", of_text(&self.scene.temperature)),
-            ("friction", of_text(&self.scene.friction.as_ref().map(|friction| friction.numbers()))),
+            ("temperature", of_debug_text(&self.scene.temperature)),
+            ("friction", of_debug_text(&self.scene.friction.as_ref().map(|friction| friction.numbers()))),
         ]
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::contact::Settings;
 use crate::error::{Result, within};
-use crate::study::course::COURSE;
+use crate::study::tuning::TUNING;
 
 /// Accepts the accuracies that studies take.
 pub(super) fn check(accuracy: f64) -> Result<()> {
@@ -11,7 +11,7 @@ pub(super) fn check(accuracy: f64) -> Result<()> {
 
 /// Settings with the tolerances of an accuracy; the other settings are default.
 pub(super) fn settings(accuracy: f64) -> Settings {
-    let tolerance = (COURSE.of_solver * accuracy).clamp(1e-12, 1e-3);
-    let series_tolerance = (COURSE.of_series * accuracy).clamp(1e-7, 1e-2);
+    let tolerance = (TUNING.of_solver * accuracy).clamp(1e-12, 1e-3);
+    let series_tolerance = (TUNING.of_series * accuracy).clamp(1e-7, 1e-2);
     Settings { tolerance, series_tolerance, ..Settings::default() }
 }

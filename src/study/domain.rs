@@ -13,17 +13,19 @@ use crate::study::scene::StudyScene;
 /// Cells along a side of the contacts that find the domain.
 const CELLS: usize = 24;
 
-/// How the domain is sought, on the scenes of [`COURSE`](super::course::COURSE).
-struct Search {
+/// How the domain is sought, on the scenes of [`TUNING`](super::tuning::TUNING).
+struct DomainSearch {
     /// Number of loads of a run whose tilt or load point changes that give a contact.
     of_turning: usize,
     /// Maximum number of domains tried.
     most_domains: usize,
     /// A domain is accepted if the contact spans a part of it in this range.
     filled: [f64; 2],
-    /// How many times as long the next one is where the contact reaches the edge, which is the most that any grows by,
-    /// and where nothing touches. None is less than a tenth as long.
-    factors: [f64; 2],
+    /// How many times as long the next one is where the contact reaches the edge, which is the most that any grows by;
+    /// where nothing touches; and at least.
+    longer: f64,
+    shorter: f64,
+    least: f64,
     /// Ratio of a domain that was found to the rectangle of the contact, and of the next one tried to it.
     to_contact: f64,
     next_to_contact: f64,
@@ -31,11 +33,13 @@ struct Search {
     growth: f64,
 }
 
-const SEARCH: Search = Search {
+const DOMAIN_SEARCH: DomainSearch = DomainSearch {
     of_turning: 16,
     most_domains: 60,
     filled: [0.45, 0.92],
-    factors: [1.7, 0.3],
+    longer: 1.7,
+    shorter: 0.3,
+    least: 0.1,
     to_contact: 1.12,
     next_to_contact: 1.3,
     growth: 1.2,
@@ -97,7 +101,7 @@ impl Domain {
 
     /// Larger, for a contact that reaches the edge.
     pub(super) fn grown(&self) -> Domain {
-        Domain { reach: self.reach.map(|half| SEARCH.growth * half), ..*self }
+        Domain { reach: self.reach.map(|half| DOMAIN_SEARCH.growth * half), ..*self }
     }
 
     /// Whether all sides are given, so that there is nothing to find.
@@ -112,7 +116,7 @@ impl Domain {
     }
 
     fn lengths(&self) -> [f64; 2] {
-        [0, 1].map(|axis| self.sides[axis].given().unwrap_or(2.0 * SEARCH.to_contact * self.reach[axis]))
+        [0, 1].map(|axis| self.sides[axis].given().unwrap_or(2.0 * DOMAIN_SEARCH.to_contact * self.reach[axis]))
     }
 
     /// The grid with so many cells across the widest contact, or the longer side where both are given.
@@ -137,22 +141,22 @@ impl Domain {
         let is_found = sides.map(|side| side == Side::Found);
         let (first, loads) = first_length(scene, sides)?;
         let mut lengths = sides.map(|side| side.given().unwrap_or(first));
-        for _ in 0..SEARCH.most_domains {
+        for _ in 0..DOMAIN_SEARCH.most_domains {
             let builder = scene.builder(grid_of(sides, lengths)?)?;
             let factors = match greatest_contacts(&builder, &loads, sides) {
                 Err(Error::Step(StepError::ContactAtEdge { .. } | StepError::LoadOutsideHull { .. })) => {
-                    [SEARCH.factors[0]; 2]
+                    [DOMAIN_SEARCH.longer; 2]
                 }
-                Err(Error::NothingToTouch { .. }) => [SEARCH.factors[1]; 2],
+                Err(Error::NothingToTouch { .. }) => [DOMAIN_SEARCH.shorter; 2],
                 Err(error) => return Err(error),
                 Ok(domain) => {
                     let filled = [0, 1].map(|axis| 2.0 * domain.reach[axis] / lengths[axis]);
-                    let fits = |axis: usize| (SEARCH.filled[0]..=SEARCH.filled[1]).contains(&filled[axis]);
+                    let fits = |axis: usize| (DOMAIN_SEARCH.filled[0]..=DOMAIN_SEARCH.filled[1]).contains(&filled[axis]);
                     if (0..2).all(|axis| !is_found[axis] || fits(axis)) && domain.has_contact() {
                         return Ok(domain);
                     }
                     filled.map(|filled| {
-                        (filled.max(2.0 / CELLS as f64) * SEARCH.next_to_contact).clamp(0.1, SEARCH.factors[0])
+                        (filled.max(2.0 / CELLS as f64) * DOMAIN_SEARCH.next_to_contact).clamp(DOMAIN_SEARCH.least, DOMAIN_SEARCH.longer)
                     })
                 }
             };
@@ -182,7 +186,7 @@ fn greatest_loads(scene: &StudyScene<'_>, compliance: f64) -> Result<Vec<Vec<Loa
         all.iter().zip(&mut loads).filter(|(all, _)| all.iter().any(|load| load.tilt() != all[0].tilt()))
     {
         loads.extend(
-            all.iter().step_by(all.len().div_ceil(SEARCH.of_turning)).map(|load| as_elastic(*load, compliance)),
+            all.iter().step_by(all.len().div_ceil(DOMAIN_SEARCH.of_turning)).map(|load| as_elastic(*load, compliance)),
         );
     }
     let most = loads.iter().map(Vec::len).max().unwrap_or_default();
@@ -199,8 +203,9 @@ fn greatest_contacts(builder: &Builder, loads: &[Vec<Load>], sides: [Side; 2]) -
     Ok(domain)
 }
 
-/// Initial length L of the domain: a contact of half width L/4 is indented by the gap at its edge, at a level of about
-/// L times this gap. With the maximum loads.
+/// The first length L to try, of 1e-12 m to 1e9 m, and the maximum loads. A contact of half width L/4 has an approach
+/// of about the rise of the gap from its middle to its edge, and at unit compliance a force of about L times that: L is
+/// the least for which this holds all loads.
 fn first_length(scene: &StudyScene<'_>, sides: [Side; 2]) -> Result<(f64, Vec<Vec<Load>>)> {
     let line = sides.iter().find_map(|side| if let Side::Uniform(length) = side { Some(*length) } else { None });
     let (mut failed, mut known) = (None, None);

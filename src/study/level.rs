@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 use crate::fields::KeptFields;
 use crate::observe::grid_convergence::{difference, difference_of_fields};
 use crate::run::Stepping;
-use crate::study::course::COURSE;
+use crate::study::tuning::TUNING;
 use crate::study::domain::{Domain, Side};
 use crate::study::observable::{Observed, Reading};
 use crate::study::scene::StudyScene;
@@ -45,8 +45,8 @@ pub(super) struct Level {
     pub(super) fields: Vec<KeptFields>,
     /// The maximum error in time of these that the run tells.
     pub(super) field_error: f64,
-    /// The contact of all times.
-    pub(super) domain: Domain,
+    /// The sides, and where the contact was at any time.
+    pub(super) footprint: Domain,
     /// Convolution equivalents.
     pub(super) convolutions: f64,
     pub(super) bytes: u64,
@@ -67,16 +67,16 @@ impl Runs<'_, '_> {
             run = run.cancelled_by(Arc::clone(flag));
         }
         if !self.fields_at.is_empty() {
-            let in_time = (COURSE.of_fields * accuracy).min(tolerance).clamp(COURSE.least_of_fields, 0.1);
+            let in_time = (TUNING.of_fields * accuracy).min(tolerance).clamp(TUNING.least_of_fields, 0.1);
             run = run.sample_at(self.fields_at)?.fields_to(in_time)?;
         }
         let (mut times, mut values, mut fields) = (Vec::new(), vec![Vec::new(); self.observed.len()], Vec::new());
-        let (mut domain, mut convolutions, mut field_error) = (Domain::empty(self.sides), 0.0, 0.0_f64);
+        let (mut footprint, mut convolutions, mut field_error) = (Domain::empty(self.sides), 0.0, 0.0_f64);
         let (cells, size) = (grid.cells(), grid.len() as f64);
         while let Some(report) = run.next_step()? {
             let now = run.contact().fields();
             times.push(report.time);
-            domain.include(now);
+            footprint.include(now);
             for (Observed { reading, .. }, values) in self.observed.iter().zip(&mut values) {
                 match reading {
                     Reading::Value(of) => values.push(of(now)),
@@ -110,7 +110,7 @@ impl Runs<'_, '_> {
         }
         drop(run);
         self.runs += 1;
-        Ok(Level { grid, builder, contact, times, values, fields, field_error, domain, convolutions, bytes })
+        Ok(Level { grid, builder, contact, times, values, fields, field_error, footprint, convolutions, bytes })
     }
 }
 

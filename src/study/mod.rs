@@ -2,13 +2,13 @@
 
 mod accuracy;
 mod cost;
-mod course;
+mod tuning;
 mod domain;
 mod level;
 mod observable;
 mod result;
 mod scene;
-mod search;
+mod driver;
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -29,28 +29,28 @@ use crate::study::observable::{Observed, Reading};
 use crate::study::scene::StudyScene;
 
 /// The accuracy of a study, unless another is set.
-const STANDARD: f64 = 1e-3;
+const DEFAULT_ACCURACY: f64 = 1e-3;
 /// Most cells of a mesh, unless another budget is given.
-const MOST_CELLS: usize = 1 << 18;
+const DEFAULT_CELLS: usize = 1 << 18;
 
 /// A convergence study of a scene along its load history: the extent of the contact is found, the error in time
-/// measured on a coarse mesh, and the error of the mesh on meshes each about 1.5 times as fine as the last, until
-/// what is asked is met. The result is the finest run itself, with the measured error of each quantity.
+/// measured on a coarse mesh, and the error of the mesh on meshes each 1.25 to 2 times as fine as the last, until what
+/// is asked is met. The result is the finest run itself, with the measured error of each quantity.
 ///
 /// # Rule
 /// 1. *Domain*: elastic contacts under the maximum loads, on 24 × 24 cells, then the first run of the study;
 ///    [`Study::domain`],
 ///    [`Study::period`] and [`Study::line`] give sides instead.
-/// 2. *Time*: on the first mesh, 16 cells across the widest contact, the run is taken with a tolerance and with an
+/// 2. *Time*: on the first mesh, 16 cells across the widest contact or 32 along a domain that is given, the run is taken with a tolerance and with an
 ///    eighth of it. Their difference at the ends of steps is the error in time; the tolerance falls until this is at
 ///    most 0.4 of the accuracy.
 /// 3. *Mesh*: the run is taken on finer meshes, in the same steps or shorter ones. Of three meshes the differences d₁
 ///    and d₂ show the order p, and 1.25 d₂/(rᵖ − 1) is the error of the finest: the grid convergence index (P. J.
 ///    Roache, J. Fluids Eng. 116 (1994) 405). Two meshes have 1.25 d/(r − 1); where no order
-///    of ½ or more is observed, the factor is 3, and p is ½.
+///    of ½ or more is observed, the factor is 3, p is ½, and d the larger of both differences.
 /// 4. It ends where error in time and error of the mesh of all quantities that are [asked](Study::ask) for are at
 ///    most the accuracy, where the [budget](Study::cells) is used up, or where a quantity does not converge on four
-///    meshes or in time ([`Ending`]).
+///    meshes in a row, or in time ([`Ending`]).
 ///
 /// Each error is relative to the maximum value of the run. Where the differences do not fall with the cells, as of a
 /// pressure that is infinite at an edge, the study gives no error, and says so ([`Measured::error`]). A measured
@@ -136,12 +136,12 @@ impl<'a> Study<'a> {
     ) -> Study<'a> {
         let asked = |observable: Observable| matches!(observable, Observable::Approach | Observable::Force);
         Study {
-            scene: StudyScene { on: Box::new(scene), histories: histories.to_vec(), until, accuracy: STANDARD },
+            scene: StudyScene { on: Box::new(scene), histories: histories.to_vec(), until, accuracy: DEFAULT_ACCURACY },
             sides: [Side::Found; 2],
             periods: [false; 2],
             observed: Observable::ALL.map(|observable| observable.observed(asked(observable))).into(),
             fields_at: Vec::new(),
-            budget: Budget { cells: MOST_CELLS, bytes: None, work: None },
+            budget: Budget { cells: DEFAULT_CELLS, bytes: None, work: None },
             cancelled: None,
         }
     }
@@ -273,7 +273,7 @@ impl<'a> Study<'a> {
     /// As [`Study::run`].
     pub fn run_with(self, mut progress: impl FnMut(StudyProgress) -> ControlFlow<()>) -> Result<StudyResult> {
         self.validate()?;
-        search::run(self, &mut progress)
+        driver::run(self, &mut progress)
     }
 
     fn validate(&self) -> Result<()> {

@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 use crate::fields::{Fields, KeptFields};
 use crate::file::replace;
 use crate::run::Stepping;
-use crate::study::course::COURSE;
+use crate::study::tuning::TUNING;
 use crate::study::level::Level;
 use crate::study::{Cost, accuracy};
 
@@ -119,7 +119,7 @@ pub(super) struct Growth {
 /// How the steps of a run are chosen.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Steps {
-    /// Times at which they end besides.
+    /// Further times at which steps end.
     pub(super) stops: Vec<f64>,
     pub(super) tolerance: f64,
 }
@@ -201,7 +201,7 @@ impl StudyResult {
         Stepping::adaptive(self.steps.tolerance)
     }
 
-    /// Times at which steps of the finest run end besides \[s\].
+    /// Further times at which steps of the finest run end \[s\].
     pub fn stops(&self) -> &[f64] {
         &self.steps.stops
     }
@@ -246,8 +246,8 @@ impl StudyResult {
         let (mut finer, mut shorter) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
         for own in self.quantities.iter().filter(|own| own.is_asked) {
             let mesh = own.mesh?;
-            finer = finer.max((mesh / ((1.0 - COURSE.in_time) * target)).powf(1.0 / own.order.unwrap_or(1.0)));
-            shorter = shorter.max(own.time / (COURSE.in_time * target));
+            finer = finer.max((mesh / ((1.0 - TUNING.in_time) * target)).powf(1.0 / own.order.unwrap_or(1.0)));
+            shorter = shorter.max(own.time / (TUNING.in_time * target));
         }
         let coarsest = self.meshes.first()?.cells;
         // no coarser than the first mesh

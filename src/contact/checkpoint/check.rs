@@ -1,6 +1,6 @@
 //! Checks of what a file holds: with a right checksum it may still hold anything.
 
-use super::scene::other_scene;
+use super::fingerprint::other_scene;
 use crate::contact::builder::memory::windowed;
 use crate::contact::{Clock, State, ViscoelasticContact};
 use crate::equilibrium::{Equilibrium, Held};

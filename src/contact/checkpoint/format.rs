@@ -10,13 +10,15 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use super::check::malformed;
-use super::scene::{Parts, require};
+use super::fingerprint::{Fingerprint, require_same_scene};
 use crate::error::Refusal;
 use crate::file::write_numbers;
 use crate::parallel::Rows;
 
 const MAGIC: &[u8; 8] = b"VISCOCHK";
-/// Raised with every change of the contents.
+/// Raised with every change of what is saved: the `State`s of contacts and of friction, `Levels`, the `Progress` and
+/// control of a run, and all that these hold; and the [fingerprint](super::fingerprint). What is new there is also
+/// checked by the `fits` or `check` of its type, which the compiler does not ask for.
 const VERSION: u32 = 24;
 /// Where the checksum is, and where what it is of begins.
 const CHECKSUM: u64 = 12;
@@ -43,15 +45,15 @@ impl<W: Write> Write for Hashed<W> {
 }
 
 /// A file that is being written.
-pub(crate) struct Output<'a, W: Write>(BufWriter<Hashed<&'a mut W>>);
+pub(crate) struct CheckpointWriter<'a, W: Write>(BufWriter<Hashed<&'a mut W>>);
 
-impl<'a, W: Write + Seek> Output<'a, W> {
-    pub(crate) fn begin(out: &'a mut W, scene: &Parts, contents: &impl Serialize) -> io::Result<Output<'a, W>> {
+impl<'a, W: Write + Seek> CheckpointWriter<'a, W> {
+    pub(crate) fn begin(out: &'a mut W, scene: &Fingerprint, contents: &impl Serialize) -> io::Result<CheckpointWriter<'a, W>> {
         out.write_all(&[&MAGIC[..], &VERSION.to_le_bytes(), &[0; (CONTENTS - CHECKSUM) as usize]].concat())?;
         let mut out = BufWriter::with_capacity(PIECE, Hashed { out, hasher: Hasher::new() });
         let scene: Vec<_> = scene.iter().map(|(_, numbers)| numbers).collect();
         postcard::to_io(&(scene, contents), &mut out).map_err(io::Error::other)?;
-        Ok(Output(out))
+        Ok(CheckpointWriter(out))
     }
 
     pub(super) fn values(&mut self, values: &[f64]) -> io::Result<()> {
@@ -67,23 +69,23 @@ impl<'a, W: Write + Seek> Output<'a, W> {
 }
 
 /// A file that is being read.
-pub(crate) struct Input<R> {
+pub(crate) struct CheckpointReader<R> {
     file: R,
     pub(super) stated_checksum: u32,
     /// Where the field that is read next begins.
     field: u64,
 }
 
-impl Input<BufReader<File>> {
+impl CheckpointReader<BufReader<File>> {
     /// Opens a file of this format.
     pub(crate) fn open(path: &Path) -> Result<Self, Refusal> {
-        Input::begin(BufReader::with_capacity(PIECE, File::open(path).map_err(unreadable)?))
+        CheckpointReader::begin(BufReader::with_capacity(PIECE, File::open(path).map_err(unreadable)?))
     }
 }
 
-impl<R: Read + Seek> Input<R> {
+impl<R: Read + Seek> CheckpointReader<R> {
     /// Reads what begins a file of this format.
-    pub(crate) fn begin(mut file: R) -> Result<Input<R>, Refusal> {
+    pub(crate) fn begin(mut file: R) -> Result<CheckpointReader<R>, Refusal> {
         let mut header = Vec::new();
         (&mut file).take(CONTENTS).read_to_end(&mut header).map_err(unreadable)?;
         if !header.starts_with(MAGIC) {
@@ -100,7 +102,7 @@ impl<R: Read + Seek> Input<R> {
             let remedy = if is_newer { ": update viscocontact" } else { ": resume it with the version that wrote it" };
             return Err(Refusal::file("checkpoint_format", what, remedy));
         }
-        Ok(Input { file, stated_checksum, field: 0 })
+        Ok(CheckpointReader { file, stated_checksum, field: 0 })
     }
 
     /// Whether the file holds what was written.
@@ -111,9 +113,9 @@ impl<R: Read + Seek> Input<R> {
     }
 
     /// Reads the contents, unless they are of another scene.
-    pub(crate) fn contents<T: DeserializeOwned>(&mut self, scene: &Parts) -> Result<T, Refusal> {
+    pub(crate) fn contents<T: DeserializeOwned>(&mut self, scene: &Fingerprint) -> Result<T, Refusal> {
         self.file.seek(SeekFrom::Start(CONTENTS)).map_err(unreadable)?;
-        require(&self.read::<Vec<Vec<f64>>>()?, scene)?;
+        require_same_scene(&self.read::<Vec<Vec<f64>>>()?, scene)?;
         let contents = self.read()?;
         self.field = self.file.stream_position().map_err(unreadable)?;
         Ok(contents)

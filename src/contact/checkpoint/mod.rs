@@ -1,8 +1,12 @@
 //! Checkpoint and resume: the state of a contact in a file, and on from there.
+//!
+//! The public `save`, `to_bytes` and `resume` are in `run/saving.rs`, since a file may hold a run; those with friction
+//! and on elastic states are in `friction/saved.rs` and `states/saved.rs`. What is saved is [`State`] by `serde`, and
+//! its fields by [`State::map`].
 
 mod check;
 pub(crate) mod format;
-pub(crate) mod scene;
+pub(crate) mod fingerprint;
 
 use std::borrow::Cow;
 use std::io::{self, Cursor, Read, Seek, Write};
@@ -22,15 +26,15 @@ use crate::hereditary::{Role, interleaved, runs};
 use crate::parallel::Rows;
 use check::check_fields;
 pub(crate) use check::{check_clocks, malformed};
-use format::{Input, Output, PIECE, damaged};
-use scene::Parts;
+use format::{CheckpointReader, CheckpointWriter, PIECE, damaged};
+use fingerprint::Fingerprint;
 
 /// Why a run in a file is rejected.
 pub(crate) const NO_RUN: &str = "a run that no contact can continue";
 
-/// What else a file keeps: how far a run has come, and what friction has done. Both use contacts, so their type is a
-/// parameter here.
-pub(crate) trait Besides: Clone + Serialize + DeserializeOwned {
+/// What a file holds beside the contact: a run, or what friction has done. `run` and `friction` stand on `contact`, so
+/// that their types are a parameter here.
+pub(crate) trait Attached: Clone + Serialize + DeserializeOwned {
     /// What tells its contacts from others.
     const KIND: &'static str;
 }
@@ -40,28 +44,28 @@ pub(crate) type Check<'a, P> = &'a dyn Fn(Option<&P>) -> Result<(), Refusal>;
 
 /// What the fields of a file follow.
 #[derive(Serialize, Deserialize)]
-#[serde(bound(deserialize = "P: Besides"))]
-struct Saved<'a, P: Besides> {
+#[serde(bound(deserialize = "P: Attached"))]
+struct Saved<'a, P: Attached> {
     /// On the region of all ranks, without fields.
     state: State,
     /// The gap, where it is no longer the one built.
     gap: Option<Cow<'a, Gap>>,
-    besides: Option<Cow<'a, P>>,
+    attached: Option<Cow<'a, P>>,
 }
 
 impl ViscoelasticContact {
     /// [`ViscoelasticContact::save`] with more.
-    pub(crate) fn save_with<P: Besides>(&self, path: &Path, besides: Option<&P>) -> Result<()> {
-        self.computation.state.held.region.rows().replace_file(path, |out| self.write(out, besides))
+    pub(crate) fn save_with<P: Attached>(&self, path: &Path, attached: Option<&P>) -> Result<()> {
+        self.computation.state.held.region.rows().replace_file(path, |out| self.write(out, attached))
     }
 
     /// What [`ViscoelasticContact::save_with`] writes, in memory.
-    pub(crate) fn bytes_with<P: Besides>(&self, besides: Option<&P>) -> Result<Vec<u8>> {
-        in_memory(|out| self.write(Some(out), besides))
+    pub(crate) fn bytes_with<P: Attached>(&self, attached: Option<&P>) -> Result<Vec<u8>> {
+        in_memory(|out| self.write(Some(out), attached))
     }
 
     /// Writes on the first rank the state of all.
-    fn write<P: Besides>(&self, out: Option<&mut (impl Write + Seek)>, besides: Option<&P>) -> io::Result<()> {
+    fn write<P: Attached>(&self, out: Option<&mut (impl Write + Seek)>, attached: Option<&P>) -> io::Result<()> {
         let state = &self.computation.state;
         let Held { region, indenter, .. } = &state.held;
         let rows = region.rows();
@@ -69,10 +73,10 @@ impl ViscoelasticContact {
         let saved = Saved {
             state: state.map(&all, &mut |_| Vec::new()),
             gap: (!Arc::ptr_eq(indenter, &self.built)).then(|| Cow::Borrowed(indenter.gap())),
-            besides: besides.map(Cow::Borrowed),
+            attached: attached.map(Cow::Borrowed),
         };
         let scene = self.parts(P::KIND);
-        let mut out = out.map(|out| Output::begin(out, &scene, &saved)).transpose();
+        let mut out = out.map(|out| CheckpointWriter::begin(out, &scene, &saved)).transpose();
         state.each(&mut |field| {
             let kept = if let Role::Work = field.role { 0 } else { field.per_cell };
             for which in 0..kept {
@@ -90,23 +94,23 @@ impl ViscoelasticContact {
                 });
             }
         });
-        out?.map_or(Ok(()), Output::finish)
+        out?.map_or(Ok(()), CheckpointWriter::finish)
     }
 
     /// Puts a saved state in the place of this one, and returns what was saved with it.
-    pub(crate) fn resume_with<P: Besides>(&mut self, path: &Path, check: Check<'_, P>) -> Result<Option<P>> {
-        self.resume_from(path, || Input::open(path), check)
+    pub(crate) fn resume_with<P: Attached>(&mut self, path: &Path, check: Check<'_, P>) -> Result<Option<P>> {
+        self.resume_from(path, || CheckpointReader::open(path), check)
     }
 
     /// The same from the bytes of such a file.
-    pub(crate) fn resume_bytes_with<P: Besides>(&mut self, bytes: &[u8], check: Check<'_, P>) -> Result<Option<P>> {
-        self.resume_from(Path::new("bytes in memory"), || Input::begin(Cursor::new(bytes)), check)
+    pub(crate) fn resume_bytes_with<P: Attached>(&mut self, bytes: &[u8], check: Check<'_, P>) -> Result<Option<P>> {
+        self.resume_from(Path::new("bytes in memory"), || CheckpointReader::begin(Cursor::new(bytes)), check)
     }
 
-    fn resume_from<P: Besides, R: Read + Seek>(
+    fn resume_from<P: Attached, R: Read + Seek>(
         &mut self,
         path: &Path,
-        open: impl FnOnce() -> Result<Input<R>, Refusal>,
+        open: impl FnOnce() -> Result<CheckpointReader<R>, Refusal>,
         check: Check<'_, P>,
     ) -> Result<Option<P>> {
         let rows = self.computation.state.held.region.rows();
@@ -118,7 +122,7 @@ impl ViscoelasticContact {
             rows.same([f64::from(file.stated_checksum)])?;
             let is_damaged = rows.any(rows.rank() == 0 && !file.is_intact());
             let read = if is_damaged { Err(damaged()) } else { self.read(&mut file, &scene, check) };
-            let (mut state, besides) = rows.agree(read.map_err(failed))?;
+            let (mut state, attached) = rows.agree(read.map_err(failed))?;
             state.sum_up();
             if state.indenter_is_new {
                 // the indenter of the last step is not saved
@@ -128,20 +132,20 @@ impl ViscoelasticContact {
             rows.intact()?;
             self.computation = computation;
             self.view.refresh(&self.computation.state.held);
-            Ok(besides)
+            Ok(attached)
         })
     }
 
     /// The state in a file on the local rows, and what else there is.
-    fn read<P: Besides>(
+    fn read<P: Attached>(
         &self,
-        file: &mut Input<impl Read + Seek>,
-        scene: &Parts,
+        file: &mut CheckpointReader<impl Read + Seek>,
+        scene: &Fingerprint,
         check: Check<'_, P>,
     ) -> Result<(State, Option<P>), Refusal> {
-        let Saved { mut state, gap, besides }: Saved<'_, P> = file.contents(scene)?;
+        let Saved { mut state, gap, attached }: Saved<'_, P> = file.contents(scene)?;
         self.check(&state, gap.as_deref())?;
-        check(besides.as_deref())?;
+        check(attached.as_deref())?;
         let gap = gap.map(|gap| Arc::new(Indenter::new(gap.into_owned(), self.scene.ground.bodies)));
         state.held.indenter = gap.unwrap_or_else(|| Arc::clone(&self.built));
         let region = state.held.region.clone().shared_like(&self.computation.state.held.region);
@@ -157,7 +161,7 @@ impl ViscoelasticContact {
         });
         sound?;
         check_fields(&state)?;
-        Ok((state, besides.map(Cow::into_owned)))
+        Ok((state, attached.map(Cow::into_owned)))
     }
 }
 

@@ -43,7 +43,7 @@ impl ViscoelasticContact {
         let only = "1: several are moved by ViscoelasticContact::set_geometries before a step";
         count_within("rigid bodies of a step along a path", self.fields().bodies(), self.fields().bodies() == 1, only)?;
         let loads = [load];
-        let requested = self.request_next(dt, &loads)?;
+        let requested = self.plan_next_step(dt, &loads)?;
         let position = travel.position(self.time() + dt)?;
         let shape = travel.shape_at(self.time() + dt)?;
         let gap = Gap::new(vec![travel.gap(&shape, self.grid())?], self.grid())?;

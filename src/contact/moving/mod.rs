@@ -77,7 +77,7 @@ impl ViscoelasticContact {
     /// As [`ViscoelasticContact::step`], or if the grid is fixed to the bodies.
     pub fn step_over(&mut self, cells: [isize; 2], dt: f64, loads: impl AsRef<[Load]>) -> Result<StepReport> {
         self.covers(coverage::STEP_OVER_BODIES)?;
-        let mut step = self.request_next(dt, loads.as_ref())?;
+        let mut step = self.plan_next_step(dt, loads.as_ref())?;
         step.interval.stride = cells;
         let mut report = self.take(step)?;
         if let Some(reach) = self.fields().extent_of_contact() {

@@ -1,4 +1,5 @@
-//! Results of a contact: fields, scalars, observations, energies, reports and warnings.
+//! Short names for what `fields()` gives, the balance of energies, and the limits of the material. What is read of every
+//! contact is in `crate::fields`.
 
 pub(in crate::contact) mod accessors;
 #[cfg(feature = "energies")]

@@ -8,7 +8,7 @@ use crate::equilibrium::{Figures, Warnings};
 use crate::extent::Extent;
 
 impl Computation {
-    /// Makes the trial the state; `sum` is Σ p, `contact_cells` is the number of pressed cells of the region, and
+    /// Makes the trial the state; `sum` is Σ p less the attraction, `contact_cells` is the number of pressed cells of the region, and
     /// `sizes` are the means of displacement and v in contact.
     pub(super) fn accept(&mut self, step: Step<'_>, sum: f64, contact_cells: usize, sizes: [f64; 2]) {
         let Computation { state, trial, .. } = self;
@@ -24,6 +24,7 @@ impl Computation {
         std::mem::swap(&mut state.previous, &mut state.held.current);
         state.held.take(trial, step.request(), sum, contact_cells);
         state.indenter_is_new = false;
+        // the extrapolation watches the pressure of the wall: with attraction the sum may vanish
         let pressed =
             if state.attracts { state.held.region.rows().sum(&state.held.current.solution.pressure) } else { sum };
         state.held.extrapolation.accept(interval.dt, pressed, trial.reach);

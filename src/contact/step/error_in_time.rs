@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::contact::{Computation, Scene, State, Step};
 use crate::equilibrium::spring::share_of_force;
-use crate::hereditary::{ErrorMeasure, StepContext, TimeError};
+use crate::hereditary::{ErrorMeasure, Outlook, TimeError};
 use crate::load::Load;
 use crate::solver::RigidMotion;
 use crate::sum;
@@ -66,15 +66,15 @@ fn first_touch(tried: &Computation, gap: &[f64]) -> f64 {
 const SMALL: [f64; 2] = [0.05, 0.2];
 
 /// The means of displacement and v that errors are relative to at least.
-pub(crate) fn least_sizes(state: &State, outlook: &StepContext) -> [f64; 2] {
+pub(crate) fn least_sizes(state: &State, outlook: &Outlook) -> [f64; 2] {
     [0, 1].map(|which| SMALL[which] * outlook.expected[which].max(state.greatest[which]))
 }
 
 /// The estimated error in time of the step that was `tried`: under a given force relative to the mean displacement in
 /// contact, under a given motion to the mean of v = K p, both weighted by the pressure. Where they are small, it is
 /// relative to the parts [`SMALL`] of the largest of the run, expected ones included.
-pub(crate) fn error_in_time(scene: &Scene, tried: &Computation, step: &Step<'_>, outlook: &StepContext) -> TimeError {
-    let StepContext { expected, on_switch: [one, all], agreement, steps, length_is_given, .. } = *outlook;
+pub(crate) fn error_in_time(scene: &Scene, tried: &Computation, step: &Step<'_>, outlook: &Outlook) -> TimeError {
+    let Outlook { expected, on_switch: [one, all], agreement, steps, length_is_given, .. } = *outlook;
     let (Computation { state, trial, .. }, interval) = (tried, step.interval);
     if interval.dt == 0.0 || interval.stride != [0; 2] {
         return TimeError::default();

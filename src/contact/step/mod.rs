@@ -2,13 +2,17 @@
 //!
 //! | Flow chart of the source paper (Figure 1) | here |
 //! |---|---|
-//! | load, and the motions that it leaves free (Eq. 4, Eq. 5) | [`constraints`] |
+//! | load, and the motions that it leaves free (Eq. 4, Eq. 5) | [`find_free_motions`] |
 //! | displacement due to the past, u_old (Eq. 9 to Eq. 12) | [`History::predict`](crate::hereditary::History::predict) |
-//! | gap before any pressure (Eq. 1) | [`gap`] |
+//! | gap before any pressure (Eq. 1) | [`RigidBodies::fill_gap_of_step`] |
 //! | initial guess of the pressure | [`initial_guess`] |
 //! | contact problem of an elastic body (Eq. 2 to Eq. 8), by conjugate gradients | [`Window::solve`] |
 //! | displacement at the end of the step | [`History::respond`](crate::hereditary::History::respond) |
-//! | pressure and displacement kept for the steps to come (Eq. 11); next step | [`ViscoelasticContact::accept`] |
+//! | pressure and displacement kept for the steps to come (Eq. 11); next step | [`Computation::accept`] |
+//!
+//! The calls: [`step`](ViscoelasticContact::step) makes a [`Step`]; `take` computes it (`attempt`: [`compute`], which
+//! chooses the region; [`OnRegion::solve`] below is the flow chart itself) and accepts it (`accept`: search for a
+//! jump, report; `adopt`: exchanges with other ranks; [`Computation::accept`]: the state changes).
 //!
 //! Beyond the paper, a step checks whether the bodies might touch outside the computed region. If so, it continues in
 //! a copy of the state on a larger region ([`outgrown`]). A step writes to its trial, to the window, to this copy,
@@ -23,9 +27,9 @@ pub(in crate::contact) mod attraction;
 #[path = "no_attraction.rs"]
 pub(in crate::contact) mod attraction;
 pub(crate) mod error_in_time;
-mod jump;
+mod load_jump;
 mod prediction;
-pub(in crate::contact) mod request;
+pub(in crate::contact) mod planned;
 mod retraction;
 
 use std::sync::Arc;
@@ -40,15 +44,15 @@ use crate::equilibrium::window::growth::{OnRegion, solve_on_growing_region};
 use crate::equilibrium::window::placement::{outgrown, region_for};
 use crate::equilibrium::{Figures, Held, Region, RigidBodies, Trial};
 use crate::error::{Error, Result, StepError, non_negative, or_failure_of};
-use crate::events;
-use crate::hereditary::{Interpolant, Interval, StepContext, TimeError};
+use crate::traced;
+use crate::hereditary::{Interpolant, Interval, Outlook, TimeError};
 use crate::load::Load;
 use crate::parallel::in_pool;
 use crate::solver::Stop;
 use accept::collect_warnings;
 use attraction::{AttractedStep, coarse_zone};
 use error_in_time::error_in_time;
-use jump::jump_without_response;
+use load_jump::hold_through_load_jump;
 use prediction::predict_contact;
 
 /// A computed step, not yet accepted. Dropping it leaves the contact unchanged.
@@ -56,7 +60,7 @@ use prediction::predict_contact;
 pub(crate) struct Attempt {
     /// The copy on a larger region, if the step needed one.
     larger: Option<Box<Computation>>,
-    /// Σ p.
+    /// Σ p, less the attraction.
     sum: f64,
 }
 
@@ -105,7 +109,8 @@ impl ViscoelasticContact {
     fn next(&mut self, cancelled: Option<&AtomicBool>, dt: f64, loads: &[Load]) -> Result<StepReport> {
         let rows = self.computation.state.held.region.rows();
         rows.or_loss(|| {
-            let requested = self.request_next(dt, loads);
+            // here, so that all ranks agree on an error before they begin; steps of runs come by `compute` alone
+            let requested = self.plan_next_step(dt, loads);
             let requested =
                 requested.and_then(|step| validate_loads(&self.scene.ground, step.request()).map(|()| step));
             let step = rows.agree(requested)?;
@@ -116,7 +121,7 @@ impl ViscoelasticContact {
     }
 
     /// The next step of length `dt`, to the tolerance of the settings.
-    pub(crate) fn request_next<'a>(&self, dt: f64, loads: &'a [Load]) -> Result<Step<'a>> {
+    pub(crate) fn plan_next_step<'a>(&self, dt: f64, loads: &'a [Load]) -> Result<Step<'a>> {
         non_negative("time step", dt)?;
         self.request(self.time() + dt, dt, loads, self.settings().tolerance)
     }
@@ -134,11 +139,11 @@ impl ViscoelasticContact {
 
     /// Computes a step and accepts it.
     pub(crate) fn take(&mut self, step: Step<'_>) -> Result<StepReport> {
-        Ok(self.take_expecting(step, &StepContext::default())?.0)
+        Ok(self.take_expecting(step, &Outlook::default())?.0)
     }
 
     /// Computes a step and accepts it; the `outlook` enters the estimate of its error.
-    pub(crate) fn take_expecting(&mut self, step: Step<'_>, outlook: &StepContext) -> Result<(StepReport, TimeError)> {
+    pub(crate) fn take_expecting(&mut self, step: Step<'_>, outlook: &Outlook) -> Result<(StepReport, TimeError)> {
         let attempt = self.attempt(&step)?;
         let error = error_in_time(&self.scene, attempt.computation(&self.computation), &step, outlook);
         Ok((self.accept(attempt, step, error)?, error))
@@ -159,10 +164,10 @@ impl ViscoelasticContact {
             in_pool(cells, || compute(&self.scene, &mut self.computation, &mut larger, step))
         });
         if let Some(larger) = &larger {
-            events::moved(from, larger.state.held.region.cells());
+            traced::moved(from, larger.state.held.region.cells());
         }
         if let Err(error) = &tried {
-            events::failed(step.interval.time, step.interval.length, error);
+            traced::failed(step.interval.time, step.interval.length, error);
             if let Some(larger) = &larger {
                 self.computation.trial.solution.counts = larger.trial.solution.counts; // the work was done
             }
@@ -272,7 +277,7 @@ fn marks(step: &Step<'_>) -> [f64; 4] {
     [step.interval.time, step.interval.dt, step.tolerance, load]
 }
 
-/// Computes a step in `own`, or in a copy on a `larger` region. Returns Σ p.
+/// Computes a step in `own`, or in a copy on a `larger` region. Returns Σ p, less the attraction.
 fn compute(
     scene: &Scene,
     own: &mut Computation,
@@ -355,7 +360,7 @@ impl OnRegion for Computation {
         } else {
             guess_forces(ground, held, window.gap(&step.indenter), request, c, trial);
             if c == 0.0 {
-                jump_without_response(state, window, trial, step)?;
+                hold_through_load_jump(state, window, trial, step)?;
             } else {
                 let ahead = held.extrapolation.reach(step.interval.dt);
                 let extrapolated = initial_guess(held, (&state.previous, ahead), window, trial, request, c);

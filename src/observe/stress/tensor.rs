@@ -1,4 +1,5 @@
-//! The stress at a point.
+//! The stress at a point, and its scalars: a new one is a method here, and `output/stress.rs` lists those that files
+//! hold.
 
 use std::ops::{Add, AddAssign, Mul};
 

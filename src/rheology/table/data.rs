@@ -26,7 +26,7 @@ impl fmt::Display for Place {
 
 /// One row of a table: its place, the abscissa, and one value for each column.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct TableRow {
+pub(crate) struct MeasuredRow {
     pub(crate) place: Place,
     pub(crate) x: f64,
     pub(crate) values: Vec<f64>,
@@ -34,13 +34,13 @@ pub(crate) struct TableRow {
     pub(crate) count: f64,
 }
 
-impl TableRow {
-    pub(crate) fn new(place: Place, x: f64, values: Vec<f64>) -> TableRow {
-        TableRow { place, x, values, count: 1.0 }
+impl MeasuredRow {
+    pub(crate) fn new(place: Place, x: f64, values: Vec<f64>) -> MeasuredRow {
+        MeasuredRow { place, x, values, count: 1.0 }
     }
 
     /// Whether another measurement at the same abscissa agrees within what short tables may scatter.
-    fn agrees(&self, other: &TableRow) -> bool {
+    fn agrees(&self, other: &MeasuredRow) -> bool {
         let mut ratios = self.values.iter().zip(&other.values).map(|(one, other)| other / one);
         self.x == other.x && ratios.all(|ratio| (ratio - 1.0).abs() <= MOST_MISFIT)
     }
@@ -48,8 +48,8 @@ impl TableRow {
 
 /// Rows of which those at the abscissa of the row before them, as where times are printed with few digits, are averaged
 /// with it: two values at one time are two measurements. Values that contradict each other stay.
-pub(crate) fn averaged_repeats(rows: Vec<TableRow>) -> Vec<TableRow> {
-    let mut averaged: Vec<TableRow> = Vec::with_capacity(rows.len());
+pub(crate) fn averaged_repeats(rows: Vec<MeasuredRow>) -> Vec<MeasuredRow> {
+    let mut averaged: Vec<MeasuredRow> = Vec::with_capacity(rows.len());
     for row in rows {
         match averaged.last_mut().filter(|mean| mean.agrees(&row)) {
             Some(mean) => {
@@ -113,8 +113,8 @@ pub(crate) struct Layout {
     pub(crate) abscissa: &'static str,
     /// Name and meaning of each column.
     pub(crate) columns: &'static [(&'static str, MaterialFunction)],
-    /// Whether an abscissa of zero is allowed.
-    pub(crate) zero: bool,
+    /// Whether the abscissa is a time, which may be 0; else it is an angular frequency.
+    pub(crate) is_over_time: bool,
 }
 
 impl Experiment {
@@ -134,8 +134,8 @@ impl Experiment {
             ),
             Experiment::Storage => ("table of storage moduli", &[("storage modulus", MaterialFunction::Storage)]),
         };
-        let zero = matches!(self, Experiment::Creep | Experiment::Relaxation);
-        Layout { table, abscissa: if zero { "time" } else { "angular frequency" }, columns, zero }
+        let is_over_time = matches!(self, Experiment::Creep | Experiment::Relaxation);
+        Layout { table, abscissa: if is_over_time { "time" } else { "angular frequency" }, columns, is_over_time }
     }
 }
 
@@ -168,17 +168,17 @@ pub(super) const SCATTER: Scatter =
 pub(super) const LEAST_ROWS: usize = 4;
 
 /// Sorts the rows of a table. Returns its samples, in ascending order.
-pub(crate) fn validated(layout: Layout, rows: &mut [TableRow]) -> Result<Vec<Sample>> {
-    let Layout { table, abscissa, columns, zero } = layout;
-    for TableRow { place, x, values, .. } in &*rows {
+pub(crate) fn validated(layout: Layout, rows: &mut [MeasuredRow]) -> Result<Vec<Sample>> {
+    let Layout { table, abscissa, columns, is_over_time } = layout;
+    for MeasuredRow { place, x, values, .. } in &*rows {
         let check = |column, value, inside, allowed| {
             let what = || format!("{table}, {place}: {column} = {value:?} is not allowed: it must be {allowed}");
             let refused =
                 || Refusal::value("table_out_of_range", what(), "; leave out rows without a value").naming(column);
             if inside { Ok(()) } else { Err(refused().valued(value).allowing(allowed)) }
         };
-        let allowed = if zero { "0, or in [1e-90, 1e90]" } else { "in [1e-90, 1e90]" };
-        check(abscissa, *x, *x == 0.0 && zero || (1e-90..=1e90).contains(x), allowed)?;
+        let allowed = if is_over_time { "0, or in [1e-90, 1e90]" } else { "in [1e-90, 1e90]" };
+        check(abscissa, *x, *x == 0.0 && is_over_time || (1e-90..=1e90).contains(x), allowed)?;
         for (&value, &(column, _)) in values.iter().zip(columns) {
             check(column, value, value.is_finite() && value > 0.0, "finite and > 0")?;
         }
@@ -201,7 +201,7 @@ pub(crate) fn validated(layout: Layout, rows: &mut [TableRow]) -> Result<Vec<Sam
 /// The maximum deviation of sorted rows from a monotone curve: an error where it exceeds what the scatter of the
 /// rows around explains, or the relative `scatter`, if it is stated; a warning, if one row of a hundred or fewer
 /// does, by a tenth at most.
-pub(crate) fn wrong_way(layout: Layout, rows: &[TableRow], scatter: Option<f64>) -> Result<(f64, Option<FitWarning>)> {
+pub(crate) fn wrong_way(layout: Layout, rows: &[MeasuredRow], scatter: Option<f64>) -> Result<(f64, Option<FitWarning>)> {
     let Layout { table, columns, .. } = layout;
     let (mut greatest, mut knock): (f64, _) = (0.0, None);
     for (index, &(column, function)) in columns.iter().enumerate() {
@@ -227,7 +227,7 @@ pub(crate) fn wrong_way(layout: Layout, rows: &[TableRow], scatter: Option<f64>)
         let (change, noise) = (changes[worst], explained(worst));
         if change > noise {
             let off = excesses.iter().filter(|excess| **excess > 1.0).count();
-            let TableRow { place, ref values, .. } = rows[worst];
+            let MeasuredRow { place, ref values, .. } = rows[worst];
             // one row of a hundred moves the curve by a hundredth of its deviation: it may go the wrong way
             if off * 100 > rows.len() || change > MOST_MISFIT {
                 let (value, [off, noise]) = (values[index], [change, noise].map(|part| 100.0 * part));

@@ -2,11 +2,11 @@
 
 use std::io::Read;
 
-use super::file::{Columns, Units};
+use super::columns::{Columns, Units};
 use super::{Experiment, Measurements};
 use crate::error::{Result, within};
 use crate::input::{Quantity, TextFormat, TextTable, UnitOf, WantedColumn};
-use crate::rheology::table::data::{Deformation, TableRow};
+use crate::rheology::table::data::{Deformation, MeasuredRow};
 use crate::values::Counted;
 
 const TEMPERATURE: WantedColumn = WantedColumn {
@@ -17,7 +17,7 @@ const TEMPERATURE: WantedColumn = WantedColumn {
     by_unit: true,
 };
 
-type Row = (f64, TableRow);
+type Row = (f64, MeasuredRow);
 
 /// Rows of nearly one temperature, in the order of their temperatures, as isotherms: one begins where a frequency, or a
 /// time, returns, but for one that is measured twice, at temperatures within 0.1 K. The rows are followed in the order
@@ -64,7 +64,7 @@ pub struct Isotherm {
     pub(super) experiment: Experiment,
     pub(super) deformation: Deformation,
     /// Ascending.
-    pub(super) rows: Vec<TableRow>,
+    pub(super) rows: Vec<MeasuredRow>,
     /// The stated scatter of the values.
     pub(super) scatter: Option<f64>,
 }
@@ -98,8 +98,8 @@ impl Isotherm {
         [ends[0].min(ends[1]), ends[0].max(ends[1])]
     }
 
-    pub(super) fn log_time(&self, row: &TableRow) -> f64 {
-        if self.experiment.layout().zero { row.x.ln() } else { -row.x.ln() }
+    pub(super) fn log_time(&self, row: &MeasuredRow) -> f64 {
+        if self.experiment.layout().is_over_time { row.x.ln() } else { -row.x.ln() }
     }
 
     /// Reads isotherms from one text file: the columns of [`Measurements::from_csv`], and one of the temperature in K
@@ -151,11 +151,11 @@ impl Isotherm {
         };
         let deformation = columns.deformation();
         columns.taken.push(temperature);
-        let with_temperature = |mut row: TableRow| (row.values.pop().unwrap_or(f64::NAN) + zero, row);
+        let with_temperature = |mut row: MeasuredRow| (row.values.pop().unwrap_or(f64::NAN) + zero, row);
         let mut rows: Vec<Row> = columns.rows(table)?.into_iter().map(with_temperature).collect();
         rows.sort_by(|a, b| a.0.total_cmp(&b.0));
         let near = rows.chunk_by(|a, b| b.0 - a.0 < 1.0);
-        let groups = near.flat_map(|rows| sweeps(rows, experiment.layout().zero));
+        let groups = near.flat_map(|rows| sweeps(rows, experiment.layout().is_over_time));
         let isotherm = |rows: Vec<Row>| {
             let mean = rows.iter().map(|row| row.0).sum::<f64>() / rows.len() as f64;
             let table = Measurements::from_rows(experiment, rows.into_iter().map(|row| row.1).collect())?;

@@ -1,7 +1,7 @@
 use super::data::Place;
 use crate::error::{Error, Refusal, Result, in_order, least_length, within};
 use crate::rheology::table::Measurements;
-use crate::rheology::table::data::{Deformation, TableRow};
+use crate::rheology::table::data::{Deformation, MeasuredRow};
 use crate::rheology::table::isotherm::Isotherm;
 use crate::rheology::table::shift::{Shift, shift_between};
 use crate::rheology::{CreepSeries, MaterialFunction, Tension, TimeTemperature};
@@ -230,16 +230,16 @@ impl MasterCurve {
     pub fn points(&self) -> Vec<(f64, MaterialFunction, f64)> {
         let functions = self.isotherms[0].experiment.layout().columns.iter().map(|&(_, function)| function);
         let values =
-            |row: TableRow| functions.clone().zip(row.values).map(move |(function, value)| (row.x, function, value));
+            |row: MeasuredRow| functions.clone().zip(row.values).map(move |(function, value)| (row.x, function, value));
         self.reduced().flat_map(values).collect()
     }
 
     /// The rows of all isotherms, at reduced times or frequencies.
-    fn reduced(&self) -> impl Iterator<Item = TableRow> {
+    fn reduced(&self) -> impl Iterator<Item = MeasuredRow> {
         self.isotherms.iter().zip(&self.shifts).flat_map(|(isotherm, shift)| {
-            let factor = if isotherm.experiment.layout().zero { (-shift.log).exp() } else { shift.log.exp() };
-            let values = |row: &TableRow| row.values.iter().map(|value| value / shift.vertical.exp()).collect();
-            isotherm.rows.iter().map(move |row| TableRow { x: row.x * factor, values: values(row), ..row.clone() })
+            let factor = if isotherm.experiment.layout().is_over_time { (-shift.log).exp() } else { shift.log.exp() };
+            let values = |row: &MeasuredRow| row.values.iter().map(|value| value / shift.vertical.exp()).collect();
+            isotherm.rows.iter().map(move |row| MeasuredRow { x: row.x * factor, values: values(row), ..row.clone() })
         })
     }
 
@@ -264,7 +264,7 @@ impl MasterCurve {
 
     fn fitted(&self, deformation: Deformation) -> Result<CreepSeries> {
         self.isotherms.iter().try_for_each(|isotherm| isotherm.deformation.accepts(deformation))?;
-        let mut rows: Vec<TableRow> = self.reduced().collect();
+        let mut rows: Vec<MeasuredRow> = self.reduced().collect();
         rows.sort_by(|a, b| a.x.total_cmp(&b.x));
         for k in 0..rows.len() {
             if k > 0 && rows[k].x <= rows[k - 1].x {

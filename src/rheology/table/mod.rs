@@ -1,7 +1,7 @@
 //! Measured data as rheologies.
 
 mod data;
-mod file;
+mod columns;
 mod isotherm;
 mod master_curve;
 mod measured;
@@ -9,7 +9,7 @@ mod outliers;
 mod shift;
 mod uncertainty;
 
-pub use file::Units;
+pub use columns::Units;
 pub use isotherm::Isotherm;
 pub use master_curve::MasterCurve;
 
@@ -21,7 +21,7 @@ use crate::rheology::{CreepSeries, Tension};
 use crate::rounded::rounded;
 use crate::values::Counted;
 pub use data::Experiment;
-use data::{Deformation, LEAST_ROWS, TableRow, averaged_repeats, validated, wrong_way};
+use data::{Deformation, LEAST_ROWS, MeasuredRow, averaged_repeats, validated, wrong_way};
 use measured::FITTING;
 use uncertainty::INTERVAL;
 
@@ -43,7 +43,7 @@ pub struct Measurements {
     experiment: Experiment,
     deformation: Deformation,
     /// Ascending.
-    rows: Vec<TableRow>,
+    rows: Vec<MeasuredRow>,
     /// Number of rows that were averaged with the row before them.
     averaged: usize,
     samples: Vec<Sample>,
@@ -162,11 +162,11 @@ impl Measurements {
     }
 
     fn of_values(experiment: Experiment, table: impl Iterator<Item = (f64, Vec<f64>)>) -> Result<Measurements> {
-        let row = |(k, (x, values))| TableRow::new(Place::Entry(k), x, values);
+        let row = |(k, (x, values))| MeasuredRow::new(Place::Entry(k), x, values);
         Measurements::from_rows(experiment, table.enumerate().map(row).collect())
     }
 
-    fn from_rows(experiment: Experiment, rows: Vec<TableRow>) -> Result<Measurements> {
+    fn from_rows(experiment: Experiment, rows: Vec<MeasuredRow>) -> Result<Measurements> {
         let given = rows.len();
         let mut rows = averaged_repeats(rows);
         let averaged = given - rows.len();
@@ -224,7 +224,7 @@ impl Measurements {
         self.deformation.accepts(deformation)?;
         let (layout, samples) = (self.experiment.layout(), &self.samples);
         let (wrong_way, knock) = wrong_way(layout, &self.rows, self.scatter)?;
-        let time = |x: f64| if layout.zero { x } else { 1.0 / x };
+        let time = |x: f64| if layout.is_over_time { x } else { 1.0 / x };
         let positive = || samples.iter().map(|sample| time(sample.x)).filter(|t| *t > 0.0);
         let (first, last) = (positive().fold(f64::INFINITY, f64::min), positive().fold(0.0, f64::max));
         let averaged = averaged(samples, (last / first).log10());

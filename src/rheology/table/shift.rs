@@ -291,7 +291,7 @@ fn off_lines(isotherm: &Isotherm, column: usize) -> Vec<f64> {
 fn place(isotherm: &Isotherm, log_time: f64) -> Option<(usize, f64)> {
     let (rows, at) = (&isotherm.rows, |k: usize| isotherm.rows[k].x.ln());
     // rows of frequencies descend in time
-    let x = if isotherm.experiment.layout().zero { log_time } else { -log_time };
+    let x = if isotherm.experiment.layout().is_over_time { log_time } else { -log_time };
     let k = rows.partition_point(|row| row.x.ln() < x).max(1);
     let part = (x - at(k - 1)) / (at(k.min(rows.len() - 1)) - at(k - 1));
     (k < rows.len() && (0.0..=1.0).contains(&part)).then_some((k, part))

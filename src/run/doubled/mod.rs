@@ -263,7 +263,7 @@ fn unless_cancelled(flag: Option<&AtomicBool>) -> Result<()> {
 }
 
 impl<C: Contact, J: Judge<C>> Control<C> for Doubled<C, J> {
-    fn bears(&self, _: &C, loads: &[Load]) -> bool {
+    fn loads_act(&self, _: &C, loads: &[Load]) -> bool {
         self.record.loads == loads
     }
 

@@ -12,7 +12,7 @@ use crate::contact::step::error_in_time::{error_in_time, least_sizes};
 use crate::contact::{Computation, State, Step, ViscoelasticContact};
 use crate::equilibrium::Region;
 use crate::error::{Error, Result};
-use crate::hereditary::{Interval, StepContext, TimeError, WEIGHTS};
+use crate::hereditary::{Interval, Outlook, TimeError, ERROR_FACTORS};
 use crate::load::LoadHistory;
 
 /// The step that was divided last.
@@ -48,7 +48,7 @@ impl Halves {
         whole: Attempt,
         step: &mut Step<'_>,
         history: &dyn LoadHistory,
-        outlook: &StepContext,
+        outlook: &Outlook,
         wasted: &mut [usize; 2],
     ) -> Result<Divided> {
         contact.move_to_region_of(whole);
@@ -72,7 +72,7 @@ impl Halves {
             passes.report = passes.report.after(of_first_half, of_whole);
         }
         self.whole_on(&contact.computation.state.held.region);
-        let difference = WEIGHTS.halves * self.difference(contact, outlook);
+        let difference = ERROR_FACTORS.halves * self.difference(contact, outlook);
         Ok(Divided { attempt, difference, errors: [of_first, of_second] })
     }
 
@@ -106,7 +106,7 @@ impl Halves {
     }
 
     /// The mean difference of u or v from the whole step, weighted by |z − s|, over their means.
-    fn difference(&self, contact: &ViscoelasticContact, outlook: &StepContext) -> f64 {
+    fn difference(&self, contact: &ViscoelasticContact, outlook: &Outlook) -> f64 {
         let Computation { state, trial, .. } = &contact.computation;
         let ([net, u_whole, v_whole], solution) = (&self.whole, &trial.solution);
         let (u, v) = (state.history.trial(), &solution.potential);

@@ -4,7 +4,7 @@ use super::{Divided, Halves, greater};
 use crate::contact::step::Attempt;
 use crate::contact::{Step, ViscoelasticContact};
 use crate::error::Result;
-use crate::hereditary::{StepContext, TimeError, WEIGHTS};
+use crate::hereditary::{Outlook, TimeError, ERROR_FACTORS};
 use crate::run::adaptive_step::{StepSearch, Tried};
 
 impl StepSearch<'_> {
@@ -14,7 +14,7 @@ impl StepSearch<'_> {
         contact: &mut ViscoelasticContact,
         whole: Attempt,
         step: &mut Step<'_>,
-        outlook: &StepContext,
+        outlook: &Outlook,
         mut error: TimeError,
         excess: f64,
     ) -> Result<Tried> {
@@ -28,7 +28,7 @@ impl StepSearch<'_> {
         control.halves = Some(halves);
         let Divided { attempt, difference, errors } = divided?;
         let jumped = contact.passes().is_some_and(|passes| passes.jumped);
-        error.relative = greater(error.relative, difference) * if jumped { WEIGHTS.jumped } else { 1.0 };
+        error.relative = greater(error.relative, difference) * if jumped { ERROR_FACTORS.jumped } else { 1.0 };
         Ok(Tried { attempt, error, excess, halves: Some(errors) })
     }
 }

@@ -47,7 +47,7 @@ pub(super) struct DescentNumbers {
     near_fold: f64,
     looks: usize,
     very_soft: f64,
-    /// A state whose energy bends down by more than this is none.
+    /// A point of balance where the energy bends down by more than this along a direction is a saddle.
     unstable: f64,
     /// Where r is less, over the maximum traction, a step of negative curvature leads to the first minimum; else it has
     /// the length of so many steps of the convex part.
@@ -142,7 +142,7 @@ enum Place {
     Minimum,
     /// A state that is unstable: the softest direction leads out.
     Saddle(Along),
-    /// None of both: the descent goes on.
+    /// Neither: the descent goes on.
     Slope,
 }
 
@@ -163,7 +163,7 @@ impl Descent<'_> {
     /// Finishes z, s and K (z − s) of the trial from their guess, in the gap of the trial.
     pub(super) fn run(&mut self) -> Result<()> {
         let mut trail = self.begin();
-        for iteration in 0..=2000 {
+        for iteration in 0..=self.problem.stop.max_iterations.saturating_mul(2) {
             trail.iteration = iteration;
             let mut gradient = self.gradient();
             self.may_go_on(gradient, trail.energy)?;

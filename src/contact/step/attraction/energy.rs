@@ -53,7 +53,8 @@ impl AttractedStep<'_> {
         self.energy(motion, cell)
     }
 
-    /// Whether the contact was in no state before: without the attraction that its gap has.
+    /// Whether the attraction of the gap has never acted: a first step of bodies within its range, which is no jump
+    /// whatever it releases.
     fn is_first(&self, trial: &Trial) -> bool {
         let AttractedStep { state, step, law, compliance: c, .. } = *self;
         let Equilibrium { sum, ref motions, ref solution, .. } = state.held.current;

@@ -54,7 +54,7 @@ impl Front {
         Some(Moved { by, middles: parts.iter().map(middle).collect() })
     }
 
-    /// Takes note of whether the profile that was moved is kept.
+    /// Adapts how far the next trial goes, by whether the last one was kept.
     pub(super) fn learn(&mut self, kept: bool) {
         self.span = if kept { 2 * self.span } else { (self.span / 2).max(1) };
     }

@@ -15,7 +15,7 @@ mod lift;
 mod near_field;
 mod passes;
 mod softest;
-mod split;
+mod jump_search;
 mod zone;
 
 pub(in crate::contact) use passes::Attracted;

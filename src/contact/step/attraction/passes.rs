@@ -56,7 +56,7 @@ pub(crate) struct Attracted {
     pub(super) near: Option<(LocalKernel, Workspace)>,
     /// The inverse of the near field, or of the kernel of periodic bodies.
     pub(super) inverse: Option<PeriodInverse>,
-    /// The end of a step that was [split](super::split).
+    /// The end of a step that was [split](super::jump_search).
     pub(super) end: Option<Box<State>>,
 }
 

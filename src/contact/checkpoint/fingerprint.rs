@@ -10,15 +10,15 @@ use crate::error::Refusal;
 use crate::hereditary::ExponentialRule;
 use crate::sum::scattered;
 
-/// Parts of a scene by name.
-pub(crate) type Parts = [(&'static str, Vec<f64>)];
+/// What tells a scene from others: its parts by name.
+pub(crate) type Fingerprint = [(&'static str, Vec<f64>)];
 
 /// Numbers of two scenes are the same if they differ by no more than this part: mathematical libraries round
 /// differently.
 const ROUNDING: f64 = 1e-9;
 
 /// Rejects the saved parts of another scene, and names the first that differs.
-pub(crate) fn require(saved: &[Vec<f64>], scene: &Parts) -> Result<(), Refusal> {
+pub(crate) fn require_same_scene(saved: &[Vec<f64>], scene: &Fingerprint) -> Result<(), Refusal> {
     let is_same = |(a, b): (&f64, &f64)| a == b || (a - b).abs() <= ROUNDING * a.abs().max(b.abs());
     let are_same = |a: &Vec<f64>, b: &Vec<f64>| a.len() == b.len() && a.iter().zip(b).all(is_same);
     let mut parts = scene.iter().enumerate();
@@ -34,8 +34,9 @@ pub(super) fn other_scene(what: &'static str) -> Refusal {
     Refusal::file("checkpoint_other_scene", message, ": build the contact as it was saved").naming(what)
 }
 
-/// What is the same to the last character, or another.
-pub(crate) fn of_text(text: &impl Debug) -> Vec<f64> {
+/// Recognises a value by its `Debug` text. The hash is split in two, so that different ones differ by more than
+/// [`ROUNDING`]: halves are below 2¹⁶. A change of a `Debug` text refuses older files: the version is raised with it.
+pub(crate) fn of_debug_text(text: &impl Debug) -> Vec<f64> {
     let hash = crc32fast::hash(format!("{text:?}").as_bytes());
     vec![f64::from(hash >> 16), f64::from(hash & 0xFFFF)]
 }
@@ -75,12 +76,12 @@ impl ViscoelasticContact {
         let folded = if symmetry { self.built.even_axes(grid) } else { [false; 2] };
         let of_gap = of_gap(&self.built, &Region::whole(grid, folded).shared_like(region));
         vec![
-            ("kind of contact", of_text(&kind)),
+            ("kind of contact", of_debug_text(&kind)),
             ("grid", [grid.cells().map(|n| n as f64), grid.spacing()].concat()),
-            ("kernel", [of_text(&kernel.to_string()), kernel.mark()].concat()),
-            ("time rule, frame, symmetry or window", of_text(&(time_rule, frame, symmetry, window))),
+            ("kernel", [of_debug_text(&kernel.to_string()), kernel.mark()].concat()),
+            ("time rule, frame, symmetry or window", of_debug_text(&(time_rule, frame, symmetry, window))),
             ("series tolerance", vec![series_tolerance]),
-            ("temperature", of_text(temperature)),
+            ("temperature", of_debug_text(temperature)),
             ("material", of_rule(self.computation.state.history.rule())),
             ("attraction", attraction.as_deref().map(of_attraction).unwrap_or_default()),
             ("geometry", [of_gap, vec![*bodies as f64]].concat()),

@@ -10,7 +10,7 @@ use crate::sum::ROUNDING;
 
 /// Writes the end of a jump of compliance 0 to the trial; the displacement stays. The pressure stays if it satisfies
 /// the loads, else it vanishes if zero pressure satisfies them. Other loads are rejected.
-pub(super) fn jump_without_response(
+pub(super) fn hold_through_load_jump(
     state: &State,
     window: &mut Window,
     trial: &mut Trial,

@@ -27,7 +27,7 @@ impl Meeting {
 
 /// Data of a run besides the step.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct StepContext {
+pub(crate) struct Outlook {
     /// Mean displacement and v that are to be expected of the maximum loads.
     pub(crate) expected: [f64; 2],
     /// How the bodies may meet again.
@@ -57,9 +57,9 @@ pub(crate) struct StepContext {
 }
 
 /// A step of given length, beside which nothing is known.
-impl Default for StepContext {
-    fn default() -> StepContext {
-        StepContext {
+impl Default for Outlook {
+    fn default() -> Outlook {
+        Outlook {
             expected: [0.0; 2],
             meeting: Meeting::default(),
             lasting: [0.0; 2],

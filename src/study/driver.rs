@@ -1,4 +1,4 @@
-//! The course of a study: domain, steps, and meshes until what is asked is met.
+//! How a study proceeds: domain, first mesh, finer meshes until what is asked is met.
 
 use std::ops::ControlFlow;
 
@@ -6,7 +6,7 @@ use super::domain::no_domain;
 use crate::Grid;
 use crate::error::{Error, Result, StepError, count_within};
 use crate::observe::grid_convergence::{OfMesh, SINGULAR, SMOOTH};
-use crate::study::course::COURSE;
+use crate::study::tuning::TUNING;
 use crate::study::domain::Domain;
 use crate::study::level::{Level, Runs};
 use crate::study::observable::{Observable, Observed, Reading};
@@ -36,13 +36,13 @@ pub(super) fn run(study: Study<'_>, progress: &mut dyn FnMut(StudyProgress) -> C
         Some(domain) => domain,
         None => Domain::find(scene, sides)?,
     };
-    for _ in 0..COURSE.most_grown {
+    for _ in 0..TUNING.most_grown {
         if let Some(result) = on_domain(runs, domain, &budget)? {
             return Ok(result);
         }
         domain = domain.grown();
     }
-    Err(no_domain(domain.grid(COURSE.across)?.lengths()[0]))
+    Err(no_domain(domain.grid(TUNING.across)?.lengths()[0]))
 }
 
 /// Meshes on a domain until what is asked is met, or the budget ends it; nothing where the contact reaches the edge
@@ -50,7 +50,7 @@ pub(super) fn run(study: Study<'_>, progress: &mut dyn FnMut(StudyProgress) -> C
 fn on_domain(runs: &mut Runs<'_, '_>, domain: Domain, budget: &Budget) -> Result<Option<StudyResult>> {
     let (observed, accuracy) = (runs.observed, runs.scene.accuracy);
     let First { level, domain, mut across, steps, in_time, steps_order } = first_mesh(runs, domain, budget.cells)?;
-    let on_finer = (COURSE.on_finer * steps.tolerance).min(COURSE.tolerances[1]);
+    let on_finer = (TUNING.on_finer * steps.tolerance).min(TUNING.tolerances[1]);
     let mut meshes = vec![Mesh::of(&level, vec![None; observed.len()])];
     let (mut finest, mut steps, mut unconverged) = (level, steps, 0);
     loop {
@@ -58,7 +58,7 @@ fn on_domain(runs: &mut Runs<'_, '_>, domain: Domain, budget: &Budget) -> Result
         let asked = || measured.iter().filter(|own| own.is_asked);
         let is_open = meshes.len() > 2 && asked().any(|own| own.error().is_none());
         unconverged = if is_open { unconverged + 1 } else { 0 };
-        let ratio = asked().filter_map(|own| own.ratio(accuracy)).reduce(f64::max).unwrap_or(COURSE.ratio);
+        let ratio = asked().filter_map(|own| own.ratio(accuracy)).reduce(f64::max).unwrap_or(TUNING.ratio);
         let growth = Growth { steps: steps_order, convolutions: convolutions_order(&meshes) };
         let mut result = StudyResult::new(finest, meshes, measured, accuracy, steps, growth);
         runs.expected = result.cost(accuracy);
@@ -90,14 +90,14 @@ fn on_domain(runs: &mut Runs<'_, '_>, domain: Domain, budget: &Budget) -> Result
 /// The next mesh, so many times as fine as one with so many cells across; the finest one that is allowed, where that
 /// is finer enough.
 fn next_grid(domain: &Domain, across: f64, ratio: f64, most_cells: usize) -> Result<(f64, Grid)> {
-    let ratio = ratio.clamp(COURSE.ratios[0], COURSE.ratios[1]);
+    let ratio = ratio.clamp(TUNING.ratios[0], TUNING.ratios[1]);
     let next = domain.grid(ratio * across)?;
     if next.len() <= most_cells {
         return Ok((ratio * across, next));
     }
     // sizes of grids go by steps of up to a tenth
     let allowed = 0.9 * ratio * (most_cells as f64 / next.len() as f64).powf(1.0 / axes(&next));
-    let finer = allowed.clamp(COURSE.ratios[0], ratio) * across;
+    let finer = allowed.clamp(TUNING.ratios[0], ratio) * across;
     Ok((finer, domain.grid(finer)?))
 }
 
@@ -119,7 +119,7 @@ impl Budget {
             Some(Ending::Reached)
         } else if asked.any(|own| own.time >= accuracy) {
             Some(Ending::Time)
-        } else if unconverged >= COURSE.most_unconverged {
+        } else if unconverged >= TUNING.most_unconverged {
             Some(Ending::NoConvergence)
         } else if next.len() > self.cells {
             Some(Ending::Cells)
@@ -137,9 +137,9 @@ impl Budget {
 fn first_mesh(runs: &mut Runs<'_, '_>, mut domain: Domain, most_cells: usize) -> Result<First> {
     let accuracy = runs.scene.accuracy;
     // the run in shorter steps has one that a run may be asked for
-    let least = COURSE.shorter * COURSE.tolerances[0];
-    let mut tolerance = (COURSE.tolerance * accuracy).clamp(least, COURSE.tolerances[1]);
-    let mut across = if domain.is_given() { COURSE.across_given } else { COURSE.across };
+    let least = TUNING.shorter * TUNING.tolerances[0];
+    let mut tolerance = (TUNING.tolerance * accuracy).clamp(least, TUNING.tolerances[1]);
+    let mut across = if domain.is_given() { TUNING.across_given } else { TUNING.across };
     let mut tries = 0;
     let level = loop {
         tries += 1;
@@ -147,14 +147,14 @@ fn first_mesh(runs: &mut Runs<'_, '_>, mut domain: Domain, most_cells: usize) ->
         let allowed = "those of the first mesh that resolves the scene, or more";
         count_within("cells of a study", most_cells, grid.len() <= most_cells, allowed)?;
         match runs.level(grid, tolerance, &[]) {
-            Err(Error::Step(StepError::ContactAtEdge { .. })) if !domain.is_given() && tries < COURSE.most_grown => {
+            Err(Error::Step(StepError::ContactAtEdge { .. })) if !domain.is_given() && tries < TUNING.most_grown => {
                 domain = domain.grown();
             }
             // the first mesh that resolves the attraction
-            Err(Error::ZoneNotResolved { .. }) => across *= COURSE.ratio,
+            Err(Error::ZoneNotResolved { .. }) => across *= TUNING.ratio,
             Err(error) => return Err(error),
-            Ok(level) if level.domain.is_narrower(&domain, COURSE.narrower) && tries < COURSE.most_grown => {
-                domain = level.domain
+            Ok(level) if level.footprint.is_narrower(&domain, TUNING.narrower) && tries < TUNING.most_grown => {
+                domain = level.footprint
             }
             Ok(level) => break level,
         }
@@ -163,26 +163,26 @@ fn first_mesh(runs: &mut Runs<'_, '_>, mut domain: Domain, most_cells: usize) ->
     let (common, mut stops, mut steps_order) = (base.times.clone(), Vec::new(), 0.0);
     let mut in_time = Vec::new();
     // the run in shorter steps has an eighth of the error of the first, which is thus 8/7 of their difference
-    let of_both = COURSE.shorter / (COURSE.shorter - 1.0);
-    for tries in 0..=COURSE.most_shortened {
-        let fine = runs.level(base.grid.clone(), tolerance / COURSE.shorter, &common)?;
+    let of_both = TUNING.shorter / (TUNING.shorter - 1.0);
+    for tries in 0..=TUNING.most_shortened {
+        let fine = runs.level(base.grid.clone(), tolerance / TUNING.shorter, &common)?;
         if tries == 0 {
             let more = fine.steps() as f64 / base.steps().max(1) as f64;
-            steps_order = (more.ln() / COURSE.shorter.ln()).clamp(0.0, 1.0);
+            steps_order = (more.ln() / TUNING.shorter.ln()).clamp(0.0, 1.0);
         }
         let differences = base.differences(&fine, runs.observed);
         in_time = differences.into_iter().map(|difference| of_both * difference).collect::<Vec<_>>();
         // pressures of both are of one accuracy, and their errors in their difference are none
-        if tolerance < COURSE.shorter * COURSE.least_of_fields {
+        if tolerance < TUNING.shorter * TUNING.least_of_fields {
             let of_pressure = |own: &Observed<'_>| matches!(own.reading, Reading::Pressure);
             let errors = runs.observed.iter().zip(&mut in_time).filter(|(own, _)| of_pressure(own));
             errors.for_each(|(_, error)| *error = error.max(base.field_error));
         }
         let worst = worst_asked(runs.observed, &in_time);
-        if worst <= COURSE.in_time * accuracy || tries == COURSE.most_shortened || tolerance <= least {
+        if worst <= TUNING.in_time * accuracy || tries == TUNING.most_shortened || tolerance <= least {
             break;
         }
-        tolerance = (tolerance * (COURSE.aim_in_time * accuracy / worst).max(1.0 / COURSE.shorter)).max(least);
+        tolerance = (tolerance * (TUNING.aim_in_time * accuracy / worst).max(1.0 / TUNING.shorter)).max(least);
         base = runs.level(base.grid.clone(), tolerance, &common)?;
         stops.clone_from(&common);
     }
@@ -221,7 +221,7 @@ fn measured(observed: &[Observed<'_>], meshes: &[Mesh], in_time: &[f64], accurac
 impl Measured {
     /// How many times as fine a mesh is expected to meet an accuracy; nothing where it is met or nothing is expected.
     fn ratio(&self, accuracy: f64) -> Option<f64> {
-        let left = COURSE.aim * (accuracy - self.time).max(0.1 * accuracy);
+        let left = TUNING.aim * (accuracy - self.time).max(0.1 * accuracy);
         let mesh = self.mesh.filter(|mesh| *mesh > left)?;
         Some((mesh / left).powf(1.0 / self.order.unwrap_or(1.0)))
     }

@@ -7,7 +7,7 @@ use super::data::Place;
 use crate::error::{Refusal, Result, positive};
 use crate::file::open;
 use crate::input::{Quantity, TakenColumn, TextFormat, TextTable, UnitOf, WantedColumn, name, same, symbol};
-use crate::rheology::table::data::{Deformation, TableRow};
+use crate::rheology::table::data::{Deformation, MeasuredRow};
 use crate::rheology::table::{Experiment, Measurements};
 use crate::rounded::rounded;
 
@@ -186,7 +186,7 @@ impl Columns {
         let find = |column: &WantedColumn| -> Result<TakenColumn> {
             table.find(column)?.ok_or_else(|| table.missing(column, ""))
         };
-        let abscissa = if experiment.layout().zero { &TIME } else { &FREQUENCY };
+        let abscissa = if experiment.layout().is_over_time { &TIME } else { &FREQUENCY };
         let values: &[&WantedColumn] = match experiment {
             Experiment::Creep => &[&CREEP],
             Experiment::Relaxation => &[&RELAXATION],
@@ -234,7 +234,7 @@ impl Columns {
         Ok(Columns { taken: taken.into_iter().enumerate().map(sized).collect::<Result<_>>()?, complex, tan })
     }
 
-    pub(super) fn rows(&self, table: &TextTable) -> Result<Vec<TableRow>> {
+    pub(super) fn rows(&self, table: &TextTable) -> Result<Vec<MeasuredRow>> {
         let sizes: Vec<f64> = self.taken.iter().map(TakenColumn::unit).collect::<Result<_, _>>()?;
         let rows = table.rows(&self.taken)?.into_iter().map(|row| {
             let mut values: Vec<f64> = row.values.iter().zip(&sizes).map(|(value, size)| value * size).collect();
@@ -243,7 +243,7 @@ impl Columns {
                 values[1] = if self.complex { modulus / tan.hypot(1.0) } else { modulus };
                 values[2] = values[1] * tan;
             }
-            TableRow::new(Place::Line(row.line), values.remove(0), values)
+            MeasuredRow::new(Place::Line(row.line), values.remove(0), values)
         });
         Ok(rows.collect())
     }

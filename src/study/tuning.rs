@@ -2,7 +2,7 @@
 //! `study_kernels.rs`; docs/maintainers/tuned_numbers.md says what comes of half and of twice each.
 
 /// Parts are of the accuracy that is asked for.
-pub(super) struct Course {
+pub(super) struct Tuning {
     /// Cells across the widest contact on the first mesh, and across a domain that is given.
     pub(super) across: f64,
     pub(super) across_given: f64,
@@ -38,7 +38,7 @@ pub(super) struct Course {
     pub(super) narrower: f64,
 }
 
-pub(super) const COURSE: Course = Course {
+pub(super) const TUNING: Tuning = Tuning {
     across: 16.0,
     across_given: 32.0,
     ratio: 1.5,

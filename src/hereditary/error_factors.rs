@@ -3,9 +3,9 @@
 //! They were chosen on random scenes (docs/maintainers/measurements.md, errors of adaptive steps), so that the true
 //! error is at most twice the tolerance in 99 % of them.
 
-/// Weights of the error of a step in space.
+/// ErrorFactors of the error of a step in space.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Weights {
+pub(crate) struct ErrorFactors {
     /// Share of the defect of a step that is left once the next step has put it right, ...
     pub(crate) corrected: f64,
     /// ... of a body that answers by an immediate dashpot, ...
@@ -35,7 +35,7 @@ pub(crate) struct Weights {
     pub(crate) halves: f64,
 }
 
-pub(crate) const WEIGHTS: Weights = Weights {
+pub(crate) const ERROR_FACTORS: ErrorFactors = ErrorFactors {
     corrected: 0.4,
     corrected_of_dashpot: 1.2,
     not_corrected: 0.25,
