@@ -165,7 +165,6 @@ mod dense;
 pub mod elastic;
 mod equilibrium;
 mod error;
-mod traced;
 mod extent;
 #[cfg(any(feature = "analytic", feature = "friction", feature = "sliding", feature = "stress", feature = "surfaces"))]
 mod fft;
@@ -176,6 +175,7 @@ mod file;
 pub mod friction;
 pub mod geometry;
 mod grid;
+mod traced;
 // the programs of the guide run only with the features that they use
 #[cfg(all(doc, any(not(doctest), all(feature = "full", feature = "npy"))))]
 pub mod guide;

@@ -14,6 +14,8 @@
 //! and ρ differ little in the pull-off force. A Lennard-Jones law with its repulsive branch is not offered: in place of
 //! the wall it would put a stiff spring.
 
+// How a step with a law is solved: `contact/step/attraction`. The trait: `crate::attraction`, which is always compiled.
+
 mod dugdale;
 mod exponential;
 pub mod laws;

@@ -1,5 +1,7 @@
 //! The warnings of a step.
 
+// A new one: CONTRIBUTING.md says where its number and its reasons are.
+
 use std::fmt;
 
 use bitflags::bitflags;

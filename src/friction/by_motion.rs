@@ -93,7 +93,7 @@ impl Solution {
         let mut search = Search { problem, kernel, buffers, tolerance: tight, convergence: Convergence::default() };
         // a displacement that friction could cause, and the angle that moves the mean cell by as much
         let largest = problem.touching().map(|i| problem.bound[i]).fold(0.0, f64::max);
-        let natural = problem.compliance * problem.side * largest;
+        let natural = problem.compliance * problem.self_influence * largest;
         let arm = problem.reach(2) / problem.reach(0);
         let units = [natural, natural, natural / arm.max(f64::MIN_POSITIVE)];
         let mut motion = [0.0; 3];

@@ -8,7 +8,6 @@ use crate::contact::{Builder, Snapshot, Step, StepError, StepReport, TimeRule, V
 use crate::equilibrium::Held;
 use crate::equilibrium::constraints::validate_loads;
 use crate::error::{Error, Refusal, Result, Special, UserError};
-use crate::friction::shear_history::ShearHistory;
 use crate::friction::kernel::{TangentialKernel, TangentialResponse};
 use crate::friction::limit::FrictionLimit;
 use crate::friction::load::{Component, LARGEST, ShearLoad, size};
@@ -16,6 +15,7 @@ use crate::friction::newton::{NEWTON, NewtonBuffers};
 use crate::friction::problem::{Cell, Problem, Solution, take_motion};
 use crate::friction::rectangle::extent;
 use crate::friction::report::{FrictionReport, Outcome};
+use crate::friction::shear_history::ShearHistory;
 use crate::friction::state::State;
 use crate::hereditary::Interpolant;
 use crate::load::Load;
@@ -190,7 +190,7 @@ impl FrictionContact {
         tolerance: f64,
     ) -> Result<Outcome> {
         self.cover_contact();
-        self.bind()?;
+        self.find_bounds_and_shares()?;
         let FrictionContact { kernel, state, step, .. } = self;
         let State { history, solution, motion, region, .. } = state;
         let StepFields { places, bound, entered, drift, free, mean, trial, buffers } = step;
@@ -209,7 +209,7 @@ impl FrictionContact {
         let wanted = forces.map(|force| force.map(|force| force / area));
         take_motion(drift, 0..cells, entered, places, given);
         let side = self.response.self_influence();
-        let problem = Problem { side, compliance, bound, drift, places, entered, wanted, cancelled };
+        let problem = Problem { self_influence: side, compliance, bound, drift, places, entered, wanted, cancelled };
         let (factor, direction) = problem.load_factor();
         if problem.is_cancelled() {
             return Err(Error::Cancelled { what: "a step" });
@@ -280,7 +280,7 @@ impl FrictionContact {
     }
 
     /// Finds the bounds, and the share of the step for which each cell is in contact.
-    fn bind(&mut self) -> Result<()> {
+    fn find_bounds_and_shares(&mut self) -> Result<()> {
         let StepFields { places, bound, entered, .. } = &mut self.step;
         let ([_, columns], pressure, region) = (self.normal.grid().cells(), self.normal.pressure(), self.state.region);
         let normal = &self.normal.computation.state;
@@ -293,7 +293,9 @@ impl FrictionContact {
         let lowered = RigidMotion { approach: start.approach - initial.datum, tilt: start.tilt };
         let gap = |k: usize, at: usize| {
             let own = computed.find([at / columns, at % columns]);
-            own.map_or(f64::INFINITY, |own| initial.above[at] + normal.history.trial()[own] - lowered.at(places[k]))
+            own.map_or(f64::INFINITY, |own| {
+                initial.above[at] + normal.history.tried_displacement()[own] - lowered.at(places[k])
+            })
         };
         // bodies that were apart touch first where their gap less what closes it is least
         let was_apart = before.solution.pressure.iter().all(|p| *p == 0.0);

@@ -11,10 +11,10 @@
 
 mod by_motion;
 mod contact;
-mod shear_history;
 mod kernel;
 mod limit;
 mod load;
+mod load_factor;
 mod modes;
 mod newton;
 mod operator;
@@ -25,15 +25,15 @@ mod report;
 mod run;
 #[cfg(feature = "checkpoint")]
 mod saved;
-mod load_factor;
+mod shear_history;
 mod snapshot;
 mod state;
 
 pub use contact::FrictionContact;
-pub use shear_history::ShearHistory;
 pub use limit::{Coulomb, FrictionLimit, Lesser, Tresca};
 pub use load::{Component, ShearLoad};
 pub use report::{FrictionReport, Outcome};
+pub use shear_history::ShearHistory;
 pub use snapshot::FrictionSnapshot;
 
 pub use crate::load::along::LateralWork;

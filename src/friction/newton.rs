@@ -33,8 +33,19 @@ pub(super) struct NewtonBuffers {
 
 impl NewtonBuffers {
     pub(super) fn resize(&mut self, n: usize) {
-        let NewtonBuffers { stress, normals, curvature, step, residual, preconditioned, direction, image, modes, drift, .. } =
-            self;
+        let NewtonBuffers {
+            stress,
+            normals,
+            curvature,
+            step,
+            residual,
+            preconditioned,
+            direction,
+            image,
+            modes,
+            drift,
+            ..
+        } = self;
         modes.resize(n);
         [&mut self.kept, &mut self.beside].into_iter().for_each(|solution| solution.resize(n));
         normals.resize(n, [0.0; 2]);
@@ -131,7 +142,7 @@ impl Solution {
         // what friction could displace
         let (largest, count) =
             problem.touching().fold((0.0_f64, 0), |(r, count), i| (r.max(problem.bound[i]), count + 1));
-        let least = NEWTON.negligible * problem.compliance * largest * problem.side * f64::from(count).sqrt();
+        let least = NEWTON.negligible * problem.compliance * largest * problem.self_influence * f64::from(count).sqrt();
         let mut convergence = Convergence::default();
         work.changed = false;
         work.began.fill(false);
@@ -331,7 +342,8 @@ impl Solution {
                 return false;
             }
             // the mean of a periodic body that sticks to all of another one: on to the circles
-            if resists <= NEWTON.unresisted * problem.compliance * problem.side * inner(direction, direction) {
+            if resists <= NEWTON.unresisted * problem.compliance * problem.self_influence * inner(direction, direction)
+            {
                 add(step, 2.0 * largest(problem.bound) / largest(direction), direction);
                 break;
             }

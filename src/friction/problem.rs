@@ -17,7 +17,7 @@ use crate::linalg;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Problem<'a> {
     /// The influence of a cell on itself \[m\].
-    pub(super) side: f64,
+    pub(super) self_influence: f64,
     /// c, the compliance of the step.
     pub(super) compliance: f64,
     /// r of each cell \[Pa\], 0 where it is apart.
@@ -26,7 +26,7 @@ pub(super) struct Problem<'a> {
     pub(super) drift: &'a [f64],
     /// Centre of each cell \[m\].
     pub(super) places: &'a [[f64; 2]],
-    /// a of each cell.
+    /// a of each cell: the share of the step for which it was in contact, 1 unless it was met in this step.
     pub(super) entered: &'a [f64],
     /// Force over the area of a cell along each component whose force is prescribed.
     pub(super) wanted: [Option<f64>; 3],
@@ -218,7 +218,7 @@ impl Solution {
     /// A step of each cell alone along −g within its circle, half of what it would take without the others: where
     /// Newton's method takes turns between sets of cells, this settles the quarrels of neighbours.
     pub(super) fn smooth(&mut self, problem: &Problem<'_>) {
-        let (n, stiffness) = (problem.cells(), 0.5 / (problem.compliance * problem.side));
+        let (n, stiffness) = (problem.cells(), 0.5 / (problem.compliance * problem.self_influence));
         for i in problem.touching() {
             let moved = [0, n].map(|start| self.traction[start + i] - stiffness * self.gradient[start + i]);
             let scale = problem.bound[i] / moved[0].hypot(moved[1]);

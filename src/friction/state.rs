@@ -15,6 +15,7 @@ pub(super) struct State {
     pub(super) solution: Solution,
     pub(super) motion: [f64; 3],
     pub(super) force: [f64; 3],
+    /// Work done along the surface, and the part of it that slip dissipated \[J\].
     pub(super) work: [f64; 2],
     /// The part of what friction carries that the prescribed forces take.
     pub(super) load_share: f64,

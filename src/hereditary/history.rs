@@ -102,7 +102,7 @@ impl History {
     }
 
     /// The displacement at the end of the step being tried: u_old once it is predicted, u once the bodies responded.
-    pub(crate) fn trial(&self) -> &[f64] {
+    pub(crate) fn tried_displacement(&self) -> &[f64] {
         &self.displacement.trial
     }
 
@@ -136,7 +136,7 @@ impl History {
     }
 
     /// The source U at the end of the step being tried; between steps, before the last one.
-    pub(crate) fn far_trial(&self) -> Option<&[f64]> {
+    pub(crate) fn tried_far_source(&self) -> Option<&[f64]> {
         self.far.as_ref().map(|far| &far.trial[..])
     }
 

@@ -20,6 +20,7 @@
 
 #[cfg(feature = "energies")]
 mod branch_energies;
+mod error_factors;
 mod error_weight;
 mod exponential_rule;
 mod field;
@@ -31,15 +32,15 @@ mod kink;
 mod lasting_error;
 mod moments;
 mod moving_frame;
+mod outlook;
 mod remembered_field;
 #[cfg(test)]
 mod rule_tests;
-mod outlook;
 mod time_error;
-mod error_factors;
 
 #[cfg(feature = "energies")]
 pub(crate) use branch_energies::BranchEnergies;
+pub(crate) use error_factors::ERROR_FACTORS;
 pub(crate) use exponential_rule::{ExponentialRule, Interpolant};
 pub(crate) use field::{Field, Role};
 #[cfg(feature = "checkpoint")]
@@ -51,4 +52,3 @@ pub(crate) use interval::{HistoryInputs, Interval};
 pub(crate) use lasting_error::LastingError;
 pub(crate) use outlook::{Meeting, Outlook};
 pub(crate) use time_error::{ErrorMeasure, TimeError};
-pub(crate) use error_factors::ERROR_FACTORS;

@@ -207,7 +207,12 @@ impl RememberedField {
 
     /// Calls `take` with c Σ e^(−z_i) q_i less the share of the differences, for each cell that is `wanted`; after
     /// [`RememberedField::predict`].
-    pub(super) fn recovery(&self, tried: &StepWeights, wanted: impl Fn(usize) -> bool, mut take: impl FnMut(usize, f64)) {
+    pub(super) fn recovery(
+        &self,
+        tried: &StepWeights,
+        wanted: impl Fn(usize) -> bool,
+        mut take: impl FnMut(usize, f64),
+    ) {
         let [first, second] = self.differences();
         let mut blocks = self.relaxing.chunks((BLOCK * self.branches).max(1));
         for start in (0..self.now.len()).step_by(BLOCK) {

@@ -2,12 +2,12 @@
 
 use std::ops::Range;
 
+use crate::hereditary::error_factors::ERROR_FACTORS;
 use crate::hereditary::error_weight::Weight;
 use crate::hereditary::exponential_rule::ExponentialRule;
 use crate::hereditary::history::History;
 use crate::hereditary::kink::Kinks;
 use crate::hereditary::outlook::{Meeting, Outlook};
-use crate::hereditary::error_factors::ERROR_FACTORS;
 use crate::parallel::Rows;
 use crate::sum::{ROUNDING, add, greatest, named_sums};
 
@@ -138,7 +138,11 @@ impl History {
             relative: error.max(error_on_return),
             by_kinks: error >= error_on_return
                 && error > error_on_switch
-                && if error_of_u > error_of_v { kinks_of_u > growth * smooth } else { ERROR_FACTORS.edge * kinks > smooth },
+                && if error_of_u > error_of_v {
+                    kinks_of_u > growth * smooth
+                } else {
+                    ERROR_FACTORS.edge * kinks > smooth
+                },
             sizes: if pressed { sizes } else { [0.0; 2] },
             defect: [signed, smooth],
             surface,

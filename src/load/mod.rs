@@ -14,23 +14,23 @@
 
 #[cfg(feature = "contacts")]
 pub(crate) mod along;
+mod checked;
 mod effect;
 mod function;
-mod history;
 #[cfg(feature = "laws")]
 pub mod laws;
 mod periodic;
 mod piecewise_linear;
 mod ramp;
 mod sinusoid;
-mod step;
+mod step_load;
 
 pub use function::FnHistory;
 pub use periodic::Periodic;
 pub use piecewise_linear::PiecewiseLinear;
 pub use ramp::Ramp;
 pub use sinusoid::Sinusoid;
-pub use step::StepLoad;
+pub use step_load::StepLoad;
 
 use std::fmt::{self, Debug};
 

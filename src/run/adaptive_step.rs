@@ -4,7 +4,6 @@ use crate::contact::step::Attempt;
 use crate::contact::step::error_in_time::error_in_time;
 use crate::contact::{Step, StepReport, ViscoelasticContact};
 use crate::error::{Error, ErrorKind, Result};
-use crate::traced;
 use crate::hereditary::{Outlook, TimeError};
 use crate::load::Load;
 use crate::run::Contact;
@@ -14,6 +13,7 @@ use crate::run::outlook::excess;
 use crate::run::passage::Span;
 use crate::run::step_control::{Proposal, StepControl};
 use crate::run::track::{Track, presses};
+use crate::traced;
 
 /// Number of shorter attempts after the solver has failed to converge.
 const MAX_SOLVER_RETRIES: u32 = 5;
@@ -59,7 +59,7 @@ pub(super) fn adaptive_step(
             }
             Err(error) => return Err(error),
         };
-        let Some(jumps) = search.judge(contact, proposal, &mut tried, &outlook) else { continue };
+        let Verdict::Accepted { jumps } = search.judge(contact, proposal, &mut tried, &outlook) else { continue };
         let error = tried.error;
         let mut report = search.accept(contact, proposal, step, tried, outlook.is_last)?;
         // bodies apart do not respond to a given approach before they touch
@@ -101,6 +101,14 @@ pub(super) struct Tried {
     pub(super) halves: Option<[TimeError; 2]>,
 }
 
+/// What becomes of a step that was tried.
+enum Verdict {
+    /// Another one is to be tried.
+    TryAnother,
+    /// It is taken; `jumps` if it is the shortest one that shows a jump.
+    Accepted { jumps: bool },
+}
+
 impl StepSearch<'_> {
     /// By how much the loads within a step deviate from what it takes them for, of the bodies whose path matters, and of
     /// those that are apart; `None` where another step is to be tried.
@@ -115,7 +123,7 @@ impl StepSearch<'_> {
         }
         let straying = control.straying(scene, state, histories, |track| !track.is_parted())?;
         if straying > control.tolerance {
-            control.judge(proposal, *dt, straying);
+            control.accept_or_shorten(proposal, *dt, straying);
             return Ok(None);
         }
         Ok(Some([straying, control.straying(scene, state, histories, Track::is_parted)?]))
@@ -161,15 +169,14 @@ impl StepSearch<'_> {
         is_unsolved && self.failures <= MAX_SOLVER_RETRIES
     }
 
-    /// Judges a step that was tried: whether it is the shortest one that shows a jump; `None` where another one is to be
-    /// tried.
+    /// Judges a step that was tried.
     fn judge(
         &mut self,
         contact: &mut ViscoelasticContact,
         mut proposal: Proposal,
         tried: &mut Tried,
         outlook: &Outlook,
-    ) -> Option<bool> {
+    ) -> Verdict {
         let StepSearch { control, course, wasted, .. } = self;
         let ViscoelasticContact { scene, computation, .. } = &*contact;
         let (computed, error) = (tried.attempt.computation(computation), &mut tried.error);
@@ -180,7 +187,7 @@ impl StepSearch<'_> {
         if let Some(top) = control.first_top(course.histories, parts) {
             computed.add_work(wasted);
             (self.stop, control.rejected) = (top, control.rejected + 1);
-            return None;
+            return Verdict::TryAnother;
         }
         // a jump takes no time: shorter steps would show nothing but its moment
         let jumps = attracts && length <= outlook.resolution && error.relative > control.tolerance;
@@ -191,8 +198,10 @@ impl StepSearch<'_> {
             proposal.order = ORDER_OF_KINKS;
         }
         // the report gives the error of a step that cannot be shorter
-        if control.judge(proposal, self.dt, error.relative) || proposal.unresolved && error.relative.is_finite() {
-            return Some(jumps);
+        if control.accept_or_shorten(proposal, self.dt, error.relative)
+            || proposal.unresolved && error.relative.is_finite()
+        {
+            return Verdict::Accepted { jumps };
         }
         traced::rejected(self.tried, length, error.relative, control.tolerance);
         control.rejected += 1;
@@ -200,7 +209,7 @@ impl StepSearch<'_> {
         if let Some(divided) = control.halves.as_ref().filter(|_| tried.halves.is_some()) {
             divided.undo(contact);
         }
-        None
+        Verdict::TryAnother
     }
 
     fn accept(

@@ -6,7 +6,8 @@
 // `follow` takes the next step of any contact by its `control`: of given length, or as long as its error allows. Most
 // contacts take steps twice (`doubled`), judged by what is known of their kind (`plain`, and in states). In space
 // (`in_space`) `step_control` alone owns the length of a step: `adaptive_step` has it proposed, tries it, has it
-// judged by its error, and accepts it or tries again. The error depends on the loads within the step (`track`, one
+// judged by its error (`accept_or_shorten`; the exceptions, tops of the load, jumps and what is not resolved, are in
+// `StepSearch::judge`), and accepts it or tries again. Doubled steps are judged in `Doubled::step`, by a `Judge`. The error depends on the loads within the step (`track`, one
 // for each body) and on what lies ahead and behind (`outlook`): the greatest loads and displacements of the run
 // (`run_scale`), and what the steps so far leave (`past_steps`).
 
@@ -17,7 +18,6 @@ pub(crate) mod control;
 #[cfg(feature = "contacts")]
 pub(crate) mod doubled;
 mod error_budget;
-mod errors;
 mod event;
 mod events;
 mod extremes;

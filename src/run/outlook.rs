@@ -5,7 +5,7 @@ use crate::equilibrium::DEFAULT_TOLERANCE;
 use crate::equilibrium::pressed::Pressed;
 use crate::error::Result;
 use crate::extent::Extent;
-use crate::hereditary::{Interval, Meeting, Outlook, ERROR_FACTORS};
+use crate::hereditary::{ERROR_FACTORS, Interval, Meeting, Outlook};
 use crate::run::control::Course;
 use crate::run::step_control::StepControl;
 use crate::run::track::is_held;

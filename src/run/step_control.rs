@@ -44,10 +44,15 @@ pub struct StepControl {
     pub(super) halves: Option<Box<Halves>>,
 }
 
+/// Errors over the tolerance count as this at least, in the step that follows and in those after it: steps of less grow
+/// by the most that they may anyway.
+const NO_ERROR: [f64; 2] = [1e-10, 1e-3];
+/// A step that ends so near a stop ends there.
+const NEARLY: f64 = 0.99;
 /// Bounds of the change of the step length. Beyond 1 + √2 the order of steps with an immediate dashpot is lower.
 const MAX_GROWTH: f64 = 3.0;
 const MAX_GROWTH_OF_DASHPOT: f64 = 2.4;
-const MAX_SHRINKAGE: f64 = 0.2;
+const MIN_GROWTH: f64 = 0.2;
 /// Safety factor of the step length.
 const SAFETY: f64 = 0.9;
 /// Exponents of the integral and the proportional control of an error that grows with the step, over its order
@@ -105,6 +110,7 @@ impl StepControl {
         let scale = |(body, history)| RunScale::new(scene, state, (body, history), until, self.tolerance);
         let scales = ahead.map(scale).collect::<Result<Vec<_>>>()?;
         if !self.know(f64::NEG_INFINITY) {
+            // nothing has been looked at
             self.past = PastSteps::none(&scene.material)?;
         }
         self.tracks.iter_mut().zip(scales).for_each(|(track, scale)| track.scale = scale.after(&track.scale));
@@ -206,6 +212,7 @@ impl StepControl {
                 let (held, slope) = (track.scale.magnitude(start), turned(track).map_or(0.0, |(_, slope)| slope));
                 let change = (track.scale.magnitude(&load) - held - slope * reduced).abs();
                 let scale = track.scale.of_load(start, &load).max(held + change);
+                // a parabola is off its chord by an eighth of its second difference
                 let own = 0.125 * (creep - glassy) / creep * change / scale.max(f64::MIN_POSITIVE);
                 deviation = deviation.max(own.abs());
             }
@@ -221,10 +228,10 @@ impl StepControl {
 
     /// Chooses the length of the next step after the one proposed, of length `dt`, with the given error, which grows
     /// with the power `order` of the length. Returns whether the error allows the step.
-    pub(super) fn judge(&mut self, Proposal { order, dashpot, .. }: Proposal, dt: f64, error: f64) -> bool {
+    pub(super) fn accept_or_shorten(&mut self, Proposal { order, dashpot, .. }: Proposal, dt: f64, error: f64) -> bool {
         // an error that overflows is no number
         let error = if error.is_nan() { f64::INFINITY } else { error };
-        let (ratio, order) = ((error / self.tolerance).max(1e-10), f64::from(order));
+        let (ratio, order) = ((error / self.tolerance).max(NO_ERROR[0]), f64::from(order));
         let accepted = ratio <= 1.0;
         let factor = if accepted {
             SAFETY * ratio.powf(-INTEGRAL / order) * (self.last / ratio).powf(PROPORTIONAL / order)
@@ -232,16 +239,16 @@ impl StepControl {
             SAFETY * ratio.powf(-1.0 / order)
         };
         let growth = if dashpot { MAX_GROWTH_OF_DASHPOT } else { MAX_GROWTH };
-        self.next = Some(dt * factor.clamp(MAX_SHRINKAGE, if accepted { growth } else { SAFETY }));
+        self.next = Some(dt * factor.clamp(MIN_GROWTH, if accepted { growth } else { SAFETY }));
         if accepted {
-            self.last = ratio.max(1e-3);
+            self.last = ratio.max(NO_ERROR[1]);
         }
         accepted
     }
 
     /// Shortens a step to a fifth after the solver has failed to converge.
     pub(super) fn shorten(&mut self, dt: f64) {
-        self.next = Some(MAX_SHRINKAGE * dt);
+        self.next = Some(MIN_GROWTH * dt);
         self.rejected += 1;
     }
 
@@ -290,7 +297,7 @@ impl StepControl {
         self.tracks.iter_mut().zip(loads).for_each(|(track, load)| track.accept(time, *load));
         if at_corner {
             self.anew(Track::turn);
-        } else if dt < 0.99 * wanted && self.last * (wanted / dt).powi(order as i32) <= 1.0 {
+        } else if dt < NEARLY * wanted && self.last * (wanted / dt).powi(order as i32) <= 1.0 {
             self.next = self.next.map(|next| next.max(wanted));
         }
     }
@@ -314,5 +321,5 @@ fn order_of(state: &State, settings: &Settings) -> (u32, bool) {
 /// much shorter than the step.
 fn towards(now: f64, stop: f64, wanted: f64) -> f64 {
     let left = stop - now;
-    if wanted >= 0.99 * left { stop } else { now + wanted.min(0.5 * left) }
+    if wanted >= NEARLY * left { stop } else { now + wanted.min(0.5 * left) }
 }

@@ -10,7 +10,7 @@ use crate::hereditary::{ExponentialRule, Interpolant};
 use crate::load::Load;
 use crate::rheology::{Material, TemperatureHistory};
 use crate::run::Contact;
-use crate::states::coulomb::Friction;
+use crate::states::coulomb::CoulombOnStates;
 use crate::states::curve::ElasticStates;
 use crate::states::elastic::state_under;
 use crate::states::levels::{Demand, Levels, Wanted};
@@ -50,7 +50,7 @@ pub(super) struct Scene {
     /// Error by which groups of levels merge.
     merge_error: f64,
     pub(super) material: Material,
-    pub(super) friction: Option<Friction>,
+    pub(super) friction: Option<CoulombOnStates>,
 }
 
 /// Error by which groups of levels merge, unless another is set.

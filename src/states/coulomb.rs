@@ -8,7 +8,7 @@ use crate::states::levels::Demand;
 
 /// Coulomb's law of a contact.
 #[derive(Debug, Clone)]
-pub(super) struct Friction {
+pub(super) struct CoulombOnStates {
     /// Coefficient of friction f.
     pub(super) coefficient: f64,
     /// Tangential compliance over the normal one.
@@ -17,7 +17,7 @@ pub(super) struct Friction {
     pub(super) history: Option<Arc<dyn LoadHistory>>,
 }
 
-impl Friction {
+impl CoulombOnStates {
     /// What tells it from another.
     #[cfg(feature = "checkpoint")]
     pub(super) fn numbers(&self) -> [f64; 2] {

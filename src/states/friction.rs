@@ -11,7 +11,7 @@ use crate::load::{Load, LoadHistory};
 use crate::rheology::Material;
 use crate::run::Contact;
 use crate::states::contact::StatesContact;
-use crate::states::coulomb::Friction;
+use crate::states::coulomb::CoulombOnStates;
 use crate::states::levels::{Demand, Shear};
 
 /// The error of bodies that do not respond alike to normal and to tangential loads.
@@ -104,7 +104,7 @@ impl StatesContact {
         within("coefficient of friction", coefficient, coefficient > 0.0 && coefficient <= 1e6, allowed)?;
         self = self.with_interpolant(Interpolant::Linear);
         self.levels.with_shear(&self.states);
-        Arc::make_mut(&mut self.scene).friction = Some(Friction { coefficient, ratio, history: None });
+        Arc::make_mut(&mut self.scene).friction = Some(CoulombOnStates { coefficient, ratio, history: None });
         Ok(self)
     }
 
@@ -153,7 +153,7 @@ impl StatesContact {
     /// The maximum so far of what the history along the surface prescribes.
     pub(super) fn reached_along(&self) -> f64 {
         let load = self.lateral_history().first().map(|along| along.before(self.time()));
-        let of = |friction: &Friction, shear: &Shear| {
+        let of = |friction: &CoulombOnStates, shear: &Shear| {
             let (far, most) = (friction.of_displacement() * shear.maxima[0], friction.coefficient * shear.maxima[1]);
             match load {
                 Some(Load::Approach { .. }) => far,
@@ -192,7 +192,7 @@ impl StatesContact {
     }
 
     /// What the levels have along the surface, if there is friction.
-    fn sheared<T>(&self, of: impl Fn(&Friction, &Shear) -> T) -> Option<T> {
+    fn sheared<T>(&self, of: impl Fn(&CoulombOnStates, &Shear) -> T) -> Option<T> {
         Some(of(self.scene.friction.as_ref()?, self.levels.shear.as_ref()?))
     }
 

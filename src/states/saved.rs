@@ -7,9 +7,9 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use crate::contact::checkpoint::fingerprint::{of_debug_text, of_rule};
 use crate::contact::checkpoint::format::damaged;
 use crate::contact::checkpoint::format::{CheckpointReader, CheckpointWriter};
-use crate::contact::checkpoint::fingerprint::{of_rule, of_debug_text};
 use crate::contact::checkpoint::{NO_RUN, check_clocks, malformed};
 use crate::error::{Error, Refusal, Result};
 use crate::file::{in_memory, replace};

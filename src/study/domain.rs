@@ -151,12 +151,14 @@ impl Domain {
                 Err(error) => return Err(error),
                 Ok(domain) => {
                     let filled = [0, 1].map(|axis| 2.0 * domain.reach[axis] / lengths[axis]);
-                    let fits = |axis: usize| (DOMAIN_SEARCH.filled[0]..=DOMAIN_SEARCH.filled[1]).contains(&filled[axis]);
+                    let fits =
+                        |axis: usize| (DOMAIN_SEARCH.filled[0]..=DOMAIN_SEARCH.filled[1]).contains(&filled[axis]);
                     if (0..2).all(|axis| !is_found[axis] || fits(axis)) && domain.has_contact() {
                         return Ok(domain);
                     }
                     filled.map(|filled| {
-                        (filled.max(2.0 / CELLS as f64) * DOMAIN_SEARCH.next_to_contact).clamp(DOMAIN_SEARCH.least, DOMAIN_SEARCH.longer)
+                        (filled.max(2.0 / CELLS as f64) * DOMAIN_SEARCH.next_to_contact)
+                            .clamp(DOMAIN_SEARCH.least, DOMAIN_SEARCH.longer)
                     })
                 }
             };

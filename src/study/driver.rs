@@ -6,11 +6,11 @@ use super::domain::no_domain;
 use crate::Grid;
 use crate::error::{Error, Result, StepError, count_within};
 use crate::observe::grid_convergence::{OfMesh, SINGULAR, SMOOTH};
-use crate::study::tuning::TUNING;
 use crate::study::domain::Domain;
 use crate::study::level::{Level, Runs};
 use crate::study::observable::{Observable, Observed, Reading};
 use crate::study::result::{Growth, Mesh, Steps, StudyResult};
+use crate::study::tuning::TUNING;
 use crate::study::{Budget, Ending, Measured, Study, StudyProgress};
 
 /// The first mesh: its run in the steps of the study, and its errors in time.

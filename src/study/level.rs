@@ -9,10 +9,10 @@ use crate::error::{Error, Result};
 use crate::fields::KeptFields;
 use crate::observe::grid_convergence::{difference, difference_of_fields};
 use crate::run::Stepping;
-use crate::study::tuning::TUNING;
 use crate::study::domain::{Domain, Side};
 use crate::study::observable::{Observed, Reading};
 use crate::study::scene::StudyScene;
+use crate::study::tuning::TUNING;
 use crate::study::{Cost, StudyProgress};
 use crate::{Grid, memory};
 

@@ -2,13 +2,13 @@
 
 mod accuracy;
 mod cost;
-mod tuning;
 mod domain;
+mod driver;
 mod level;
 mod observable;
 mod result;
 mod scene;
-mod driver;
+mod tuning;
 
 use std::ops::ControlFlow;
 use std::sync::Arc;

@@ -9,8 +9,8 @@ use crate::error::{Error, Result};
 use crate::fields::{Fields, KeptFields};
 use crate::file::replace;
 use crate::run::Stepping;
-use crate::study::tuning::TUNING;
 use crate::study::level::Level;
+use crate::study::tuning::TUNING;
 use crate::study::{Cost, accuracy};
 
 /// A mesh of a study, and what its run took.

@@ -48,7 +48,11 @@ impl<W: Write> Write for Hashed<W> {
 pub(crate) struct CheckpointWriter<'a, W: Write>(BufWriter<Hashed<&'a mut W>>);
 
 impl<'a, W: Write + Seek> CheckpointWriter<'a, W> {
-    pub(crate) fn begin(out: &'a mut W, scene: &Fingerprint, contents: &impl Serialize) -> io::Result<CheckpointWriter<'a, W>> {
+    pub(crate) fn begin(
+        out: &'a mut W,
+        scene: &Fingerprint,
+        contents: &impl Serialize,
+    ) -> io::Result<CheckpointWriter<'a, W>> {
         out.write_all(&[&MAGIC[..], &VERSION.to_le_bytes(), &[0; (CONTENTS - CHECKSUM) as usize]].concat())?;
         let mut out = BufWriter::with_capacity(PIECE, Hashed { out, hasher: Hasher::new() });
         let scene: Vec<_> = scene.iter().map(|(_, numbers)| numbers).collect();

@@ -5,8 +5,8 @@
 //! its fields by [`State::map`].
 
 mod check;
-pub(crate) mod format;
 pub(crate) mod fingerprint;
+pub(crate) mod format;
 
 use std::borrow::Cow;
 use std::io::{self, Cursor, Read, Seek, Write};
@@ -26,8 +26,8 @@ use crate::hereditary::{Role, interleaved, runs};
 use crate::parallel::Rows;
 use check::check_fields;
 pub(crate) use check::{check_clocks, malformed};
-use format::{CheckpointReader, CheckpointWriter, PIECE, damaged};
 use fingerprint::Fingerprint;
+use format::{CheckpointReader, CheckpointWriter, PIECE, damaged};
 
 /// Why a run in a file is rejected.
 pub(crate) const NO_RUN: &str = "a run that no contact can continue";

@@ -59,7 +59,7 @@ impl ViscoelasticContact {
     fn work_along(&self, [load, motion]: [[f64; 3]; 2]) -> f64 {
         let State { held: Held { region, current, .. }, history, previous, .. } = &self.computation.state;
         let pressures = previous.solution.pressure.iter().zip(&current.solution.pressure);
-        let displacements = history.trial().iter().zip(history.displacement());
+        let displacements = history.tried_displacement().iter().zip(history.displacement());
         let work: f64 = pressures.zip(displacements).map(|((p, q), (u, w))| 0.5 * (p + q) * (w - u)).sum();
         let [load_now, motion_now] = self.load_and_motion();
         let pressed = (0..3).map(|k| 0.5 * (load[k] + load_now[k]) * (motion_now[k] - motion[k]));

@@ -138,7 +138,8 @@ pub(super) fn first_step_error(scene: &Scene, tried: &Computation, step: &Step<'
     };
     let jumped = state.clock.last_dt == 0.0;
     let [now, before] = [&state.held.current, &state.previous].map(|ends| &ends.solution.potential);
-    let ([pressure, ..], potential, displacement) = (tried.weights(), &trial.solution.potential, state.history.trial());
+    let ([pressure, ..], potential, displacement) =
+        (tried.weights(), &trial.solution.potential, state.history.tried_displacement());
     // products of great pressures and displacements would overflow
     let rows = state.held.region.rows();
     let most = rows.greatest(greatest(pressure));

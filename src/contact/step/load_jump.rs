@@ -43,7 +43,7 @@ fn residual(state: &State, initial: &Gap, trial: &Trial, step: &Step<'_>, body: 
     let released = freedom.translation && freedom.total == 0.0;
     let prescribed = step.request().prescribed(body).approach.abs() + initial.datum.abs();
     let own = |k: usize| initial.owner(k) == body && initial.above[k].is_finite();
-    let (rows, u) = (state.held.region.rows(), state.history.trial());
+    let (rows, u) = (state.held.region.rows(), state.history.tried_displacement());
     let pressure = |k: usize| if pressed { state.held.current.solution.pressure[k] } else { 0.0 };
     let gap = |k: usize| trial.gap[k] - modes.displacement(motion, k);
     let rounding = |k: usize| {

@@ -28,8 +28,8 @@ pub(in crate::contact) mod attraction;
 pub(in crate::contact) mod attraction;
 pub(crate) mod error_in_time;
 mod load_jump;
-mod prediction;
 pub(in crate::contact) mod planned;
+mod prediction;
 mod retraction;
 
 use std::sync::Arc;
@@ -44,11 +44,11 @@ use crate::equilibrium::window::growth::{OnRegion, solve_on_growing_region};
 use crate::equilibrium::window::placement::{outgrown, region_for};
 use crate::equilibrium::{Figures, Held, Region, RigidBodies, Trial};
 use crate::error::{Error, Result, StepError, non_negative, or_failure_of};
-use crate::traced;
 use crate::hereditary::{Interpolant, Interval, Outlook, TimeError};
 use crate::load::Load;
 use crate::parallel::in_pool;
 use crate::solver::Stop;
+use crate::traced;
 use accept::collect_warnings;
 use attraction::{AttractedStep, coarse_zone};
 use error_in_time::error_in_time;
@@ -317,12 +317,12 @@ impl OnRegion for Computation {
 
     fn outgrown(&self, (scene, step): (&Scene, &Step<'_>)) -> Option<Region> {
         let Computation { state, window, trial, .. } = self;
-        outgrown(&scene.ground, &state.held, window, trial, step.request(), (1.0, state.history.far_trial()?))
+        outgrown(&scene.ground, &state.held, window, trial, step.request(), (1.0, state.history.tried_far_source()?))
     }
 
     fn acceptable(&self, (scene, step): (&Scene, &Step<'_>)) -> Result<f64> {
         let (Computation { state, trial, attracted, .. }, ground) = (self, &scene.ground);
-        let displaced = state.held.region.rows().sum(state.history.trial());
+        let displaced = state.held.region.rows().sum(state.history.tried_displacement());
         let sum = acceptable(ground, &state.held, displaced, trial, step.request())?;
         attracted.as_ref().map_or(Ok(()), |own| own.check_edge(scene, step))?;
         Ok(sum)

@@ -11,7 +11,7 @@ impl RigidBodies<'_> {
     /// is their retraction minus the recovery u − u_old of the surface. The difference hi + u_old − ω would lose the
     /// recovery in rounding once the pressure has relaxed by many decades.
     pub(super) fn fill_gap_of_step(&self, initial: &Gap, history: &History, pressure: &[f64], gap: &mut [f64]) {
-        self.fill_gap(initial, Some(history.trial()), gap);
+        self.fill_gap(initial, Some(history.tried_displacement()), gap);
         for (body, retraction) in self.retractions() {
             let pressed = |k: usize| pressure[k] > 0.0 && initial.owner(k) == body;
             history.recovery(pressed, |k, recovery| gap[k] = retraction.at(self.region.center(k)) - recovery);

@@ -201,7 +201,11 @@ pub(crate) fn validated(layout: Layout, rows: &mut [MeasuredRow]) -> Result<Vec<
 /// The maximum deviation of sorted rows from a monotone curve: an error where it exceeds what the scatter of the
 /// rows around explains, or the relative `scatter`, if it is stated; a warning, if one row of a hundred or fewer
 /// does, by a tenth at most.
-pub(crate) fn wrong_way(layout: Layout, rows: &[MeasuredRow], scatter: Option<f64>) -> Result<(f64, Option<FitWarning>)> {
+pub(crate) fn wrong_way(
+    layout: Layout,
+    rows: &[MeasuredRow],
+    scatter: Option<f64>,
+) -> Result<(f64, Option<FitWarning>)> {
     let Layout { table, columns, .. } = layout;
     let (mut greatest, mut knock): (f64, _) = (0.0, None);
     for (index, &(column, function)) in columns.iter().enumerate() {

@@ -1,7 +1,7 @@
 //! Measured data as rheologies.
 
-mod data;
 mod columns;
+mod data;
 mod isotherm;
 mod master_curve;
 mod measured;

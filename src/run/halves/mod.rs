@@ -12,7 +12,7 @@ use crate::contact::step::error_in_time::{error_in_time, least_sizes};
 use crate::contact::{Computation, State, Step, ViscoelasticContact};
 use crate::equilibrium::Region;
 use crate::error::{Error, Result};
-use crate::hereditary::{Interval, Outlook, TimeError, ERROR_FACTORS};
+use crate::hereditary::{ERROR_FACTORS, Interval, Outlook, TimeError};
 use crate::load::LoadHistory;
 
 /// The step that was divided last.
@@ -93,7 +93,7 @@ impl Halves {
         net.clone_from(&trial.solution.pressure);
         net.iter_mut().zip(&trial.solution.attraction).for_each(|(q, s)| *q -= s);
         displacement.clear();
-        displacement.extend_from_slice(state.history.trial());
+        displacement.extend_from_slice(state.history.tried_displacement());
         potential.clone_from(&trial.solution.potential);
     }
 
@@ -109,7 +109,7 @@ impl Halves {
     fn difference(&self, contact: &ViscoelasticContact, outlook: &Outlook) -> f64 {
         let Computation { state, trial, .. } = &contact.computation;
         let ([net, u_whole, v_whole], solution) = (&self.whole, &trial.solution);
-        let (u, v) = (state.history.trial(), &solution.potential);
+        let (u, v) = (state.history.tried_displacement(), &solution.potential);
         let [weight, of_u, of_v, off_u, off_v] = state.held.region.rows().sum_terms(|k| {
             let w = net[k].abs() + (solution.pressure[k] - solution.attraction[k]).abs();
             Some([1.0, u[k].abs(), v[k].abs(), (u[k] - u_whole[k]).abs(), (v[k] - v_whole[k]).abs()].map(|x| w * x))

@@ -4,7 +4,7 @@ use super::{Divided, Halves, greater};
 use crate::contact::step::Attempt;
 use crate::contact::{Step, ViscoelasticContact};
 use crate::error::Result;
-use crate::hereditary::{Outlook, TimeError, ERROR_FACTORS};
+use crate::hereditary::{ERROR_FACTORS, Outlook, TimeError};
 use crate::run::adaptive_step::{StepSearch, Tried};
 
 impl StepSearch<'_> {

@@ -8,12 +8,12 @@ use crate::load::Load;
 use crate::parallel::Rows;
 use crate::solver::Counts;
 
-/// The equations of a step: q = M x/c + p, where M gives the mean its stiffness.
+/// The equations of a step: q = M x/c + b, where M gives the mean its stiffness.
 pub(super) struct Balance {
     pub(super) compliance: f64,
     /// The stiffness of the mean of x, which replaces the one in M.
     pub(super) of_mean: f64,
-    /// p.
+    /// b.
     pub(super) offset: f64,
     /// Compliance of the mean, in the preconditioner.
     pub(super) soft: f64,
@@ -135,17 +135,17 @@ impl Operators<'_> {
 }
 
 impl Balance {
-    /// p of a cell.
+    /// b of a cell.
     pub(super) fn offset_at(&self, k: usize) -> f64 {
         self.offset + self.tilts.as_ref().map_or(0.0, |tilts| tilts.at(tilts.carried, k))
     }
 
     /// Moves x to h ≥ 0, and to its given mean by a shift; returns whether any cell moved.
     pub(super) fn project(&self, rows: &Rows, gap: &[f64], x: &mut [f64]) -> bool {
-        let below = x.iter().zip(gap).any(|(x, z)| z + x < 0.0);
+        let below = x.iter().zip(gap).any(|(x, g)| g + x < 0.0);
         if !self.held {
             if below {
-                x.iter_mut().zip(gap).for_each(|(x, z)| *x = x.max(-z));
+                x.iter_mut().zip(gap).for_each(|(x, g)| *x = x.max(-g));
             }
             return below;
         }
@@ -165,8 +165,8 @@ impl Balance {
             shift -= sum / if free > 0.0 { free } else { rows.len() as f64 };
         }
         if below || shift != 0.0 {
-            for (x, z) in x.iter_mut().zip(gap) {
-                *x = if lifts || z + *x > 0.0 { (*x + shift).max(-z) } else { -z };
+            for (x, g) in x.iter_mut().zip(gap) {
+                *x = if lifts || g + *x > 0.0 { (*x + shift).max(-g) } else { -g };
             }
         }
         below || shift != 0.0

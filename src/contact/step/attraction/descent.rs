@@ -1,8 +1,8 @@
 //! Steps of periodic bodies: conjugate gradients in the gap.
 //!
-//! On a period K has an inverse M, wave by wave. With the lift x = h − z of the surface over its gap z before any
-//! traction, the creep of the past included, the net traction of a state in balance is q = M x/c + p, and its energy
-//! E = Σ ½ x (q + p) − ∫ₕ^∞ s. Only the stiffness of the mean and p differ between loads: a force fixes the mean of
+//! On a period K has an inverse M, wave by wave. With the lift x = h − g of the surface over its gap g before any
+//! traction, the creep of the past included, the net traction of a state in balance is q = M x/c + b, and its energy
+//! E = Σ ½ x (q + b) − ∫ₕ^∞ s. Only the stiffness of the mean and b differ between loads: a force fixes the mean of
 //! q, a spring sets its stiffness in series with the bodies, and a given approach of bodies whose mean is held fixes
 //! the mean of h, with a multiplier λ. Free tilts are two more [modes](super::balance::Tilts) beside the mean. So the loads are in
 //! balance in every iteration.
@@ -106,8 +106,13 @@ pub(super) struct Gradient {
     pub(super) at_wall: f64,
 }
 
-/// A descent in the gap: what it reads, and what it writes. In the trial x takes the place of the potential, q of the
-/// attraction, and r of the pressure.
+/// A descent in the gap: what it reads, and what it writes, in these fields.
+///
+/// | field | in a descent | at a point that is tried | between steps |
+/// |---|---|---|---|
+/// | `solution.potential`, `attraction`, `pressure` | x, q, r | the same | K (z − s), s, z, the pressure of the wall |
+/// | `in_gap.direction`, `image` | d, M d/c | the same | weights of the error now, and at the start |
+/// | `in_gap.lift`, `traction` | K r, r of the iteration before | x, q | weights before; none |
 pub(super) struct Descent<'a> {
     pub(super) problem: &'a AttractedStep<'a>,
     pub(super) operators: Operators<'a>,

@@ -11,11 +11,11 @@ mod edge;
 mod energy;
 mod front;
 mod gap_direction;
+mod jump_search;
 mod lift;
 mod near_field;
 mod passes;
 mod softest;
-mod jump_search;
 mod zone;
 
 pub(in crate::contact) use passes::Attracted;

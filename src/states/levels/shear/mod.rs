@@ -6,7 +6,8 @@
 //! free ones carry nothing. A step slips from the edge inwards until its demand is met. Levels that are met in a step
 //! take one part of f w before any slips. Steps are linear in time: where slip begins or ends, U has a kink.
 //!
-//! θ, U and what they make are divided by the coefficient of friction here.
+//! θ and forces are divided by the coefficient f here, U and displacements by f times the ratio of the compliances
+//! along the surface and normal to it, and works by both.
 
 mod loss;
 

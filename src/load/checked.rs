@@ -1,4 +1,4 @@
-//! What runs ask of a load history.
+//! Loads of a history, checked, as runs ask for them.
 
 use crate::error::{Error, Result};
 use crate::load::{Load, LoadHistory};
