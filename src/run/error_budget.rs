@@ -3,7 +3,6 @@
 use std::fmt;
 
 use crate::fields::mesh_error::MeshError;
-use crate::run::{Contact, Run};
 
 /// Where the error of a run comes from, made by [`Run::error_budget`](crate::run::Run::error_budget). All
 /// errors are relative; `None` where nothing was estimated.
@@ -65,14 +64,5 @@ impl fmt::Display for ErrorBudget {
             None => f.write_str("not measured")?,
         }
         write!(f, "; solver {:.1e}", self.solver)
-    }
-}
-
-impl<C: Contact> Run<'_, C> {
-    /// The errors of the run so far, by their source. That of the mesh of a contact in space is
-    /// [measured](crate::fields::Fields::mesh_error) by this call, in the present state.
-    pub fn error_budget(&self) -> ErrorBudget {
-        let mesh = self.contact.in_space().and_then(|fields| fields.mesh_error().unwrap_or_default());
-        ErrorBudget { field: self.worst_field(), mesh, ..self.control.worst() }
     }
 }

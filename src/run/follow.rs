@@ -10,6 +10,7 @@ use crate::load::{Load, LoadHistory};
 #[cfg(feature = "checkpoint")]
 use crate::run::autosave::Autosave;
 use crate::run::control::{Control, Course};
+use crate::run::error_budget::ErrorBudget;
 use crate::run::event::Event;
 use crate::run::fields::RunFields;
 use crate::run::histories::{Histories, RunHistory};
@@ -357,6 +358,13 @@ impl<'a, C: Contact> Run<'a, C> {
     /// The contact after the last step.
     pub fn contact(&self) -> &C {
         &self.contact
+    }
+
+    /// The errors of the run so far, by their source. That of the mesh of a contact in space is
+    /// [measured](crate::fields::Fields::mesh_error) by this call, in the present state.
+    pub fn error_budget(&self) -> ErrorBudget {
+        let mesh = self.contact.in_space().and_then(|fields| fields.mesh_error().unwrap_or_default());
+        ErrorBudget { field: self.worst_field(), mesh, ..self.control.worst() }
     }
 }
 

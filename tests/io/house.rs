@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 /// The modules at the top of `src`: each may use the modules above it, none below it. docs/maintainers/design.md describes them.
 const ORDER: &str = "\
-    values axis extent guide linalg dense quadrature numeric rounded sum error events ascending attraction file input \
+    values axis extent guide linalg dense quadrature numeric rounded sum error traced ascending attraction file input \
     grid memory parallel fft geometry motion kernel load rheology adhesion hereditary solver analytic equilibrium \
     fields elastic observe contact sliding run friction states study laws output plot";
 
