@@ -7,12 +7,12 @@ use super::kernel::other_bodies;
 use crate::contact::{Builder, Snapshot, Step, StepError, StepReport, TimeRule, ViscoelasticContact};
 use crate::equilibrium::Held;
 use crate::equilibrium::constraints::validate_loads;
-use crate::error::{Error, Refusal, Result, Special, UserError};
+use crate::error::{Error, Result, Special, UserError};
 use crate::friction::kernel::{TangentialKernel, TangentialResponse};
 use crate::friction::limit::FrictionLimit;
 use crate::friction::load::{Component, LARGEST, ShearLoad, size};
 use crate::friction::newton::{NEWTON, NewtonBuffers};
-use crate::friction::problem::{Cell, Problem, Solution, take_motion};
+use crate::friction::problem::{Cell, Problem, Solution, not_found, take_motion};
 use crate::friction::rectangle::extent;
 use crate::friction::report::{FrictionReport, Outcome};
 use crate::friction::shear_history::ShearHistory;
@@ -21,7 +21,6 @@ use crate::hereditary::Interpolant;
 use crate::load::Load;
 use crate::load::along::LateralWork;
 use crate::parallel::in_pool;
-use crate::rounded::{TIME, rounded};
 use crate::run::doubled::SavedRun;
 use crate::run::doubled::plain::Plain;
 use crate::solver::RigidMotion;
@@ -84,17 +83,6 @@ pub(super) struct StepFields {
     mean: Vec<f64>,
     trial: Solution,
     buffers: NewtonBuffers,
-}
-
-/// The error of tractions whose residual stays above what is allowed.
-fn not_found(time: f64, residual: f64, tolerance: f64, iterations: usize) -> Error {
-    let what = format!(
-        "at t = {} s the tractions along the surface were not found: residual {residual:.1e} after {iterations} Newton \
-         steps, where {tolerance:.1e} is allowed",
-        rounded(time, TIME)
-    );
-    let remedy = "; take a shorter step, or a greater Settings::tolerance";
-    Refusal::search("friction_not_converged", what, remedy).into()
 }
 
 impl FrictionContact {

@@ -11,7 +11,9 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use crate::error::{Error, Refusal};
 use crate::linalg;
+use crate::rounded::{TIME, rounded};
 
 /// What a step asks along the surface.
 #[derive(Debug, Clone, Copy)]
@@ -248,4 +250,15 @@ impl Problem<'_> {
         }
         linalg::solve_normal_equations(&gram, right, 1e-13)
     }
+}
+
+/// The error of tractions whose residual stays above what is allowed.
+pub(super) fn not_found(time: f64, residual: f64, tolerance: f64, iterations: usize) -> Error {
+    let what = format!(
+        "at t = {} s the tractions along the surface were not found: residual {residual:.1e} after {iterations} Newton \
+         steps, where {tolerance:.1e} is allowed",
+        rounded(time, TIME)
+    );
+    let remedy = "; take a shorter step, or a greater Settings::tolerance";
+    Refusal::search("friction_not_converged", what, remedy).into()
 }
