@@ -123,7 +123,7 @@ impl GroupHistory {
     }
 
     /// Lets the groups move along the surface too.
-    pub(crate) fn shear(&mut self, groups: usize) {
+    pub(crate) fn add_tangential(&mut self, groups: usize) {
         let mut past = Past::new(&self.rule, groups);
         past.columns.iter_mut().for_each(|column| column.resize(self.normal.columns[0].len(), 0.0));
         self.tangential = Some(past);
@@ -254,7 +254,7 @@ impl GroupHistory {
     }
 
     /// The displacement of each group along the surface, if there is friction.
-    pub(crate) fn sheared(&self) -> Option<&[f64]> {
+    pub(crate) fn tangential_displacements(&self) -> Option<&[f64]> {
         self.tangential.as_ref().map(|past| &past.columns[0][..])
     }
 

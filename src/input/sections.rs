@@ -113,7 +113,8 @@ pub(super) fn with_units(mut names: Vec<String>, units: Option<Vec<String>>) -> 
     names
 }
 
-/// Whether the fields of a row are units: short words, of which one at least is known, and no number but a few ones.
+/// Whether the fields of a row are units: short words, at least one of which is known. The only numbers are the digit 1,
+/// for quantities without a unit, in at most half of the fields.
 pub(super) fn are_units(row: &TextRow) -> bool {
     let fields = || row.fields.iter().map(|field| bare(field)).filter(|field| !["", "-", "%"].contains(field));
     let is_known = |field: &&str| !readings(field).is_empty();

@@ -78,7 +78,8 @@ const UNITS: [(&[&str], Quantity, f64, bool); 20] = [
 ];
 const PREFIXES: [&str; 11] = ["", "k", "M", "G", "T", "c", "m", "µ", "u", "n", "p"];
 const FACTORS: [f64; 11] = [1.0, 1e3, 1e6, 1e9, 1e12, 1e-2, 1e-3, 1e-6, 1e-6, 1e-9, 1e-12];
-/// Names of prefixes, in lower case, and their symbols.
+/// Names of prefixes, in lower case, and their symbols. Those without a size in [`PREFIXES`], hecto and femto, are known
+/// so that their headings are refused.
 const NAMED_PREFIXES: [(&str, &str); 12] = [
     ("tera", "T"),
     ("giga", "G"),

@@ -29,7 +29,6 @@ mod layer;
 mod layered;
 mod layout;
 mod line_load;
-mod lines;
 mod love;
 #[cfg(feature = "adhesion")]
 mod near;

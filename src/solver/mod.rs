@@ -32,5 +32,5 @@ use extension::Attenuation;
 use outcome::ResidualSums;
 use passes::{Passes, Search, add};
 use preconditioner::Preconditioner;
-use rigid_motion::Line;
+use rigid_motion::RowModes;
 use row_segments::{Cut, PIECE_CELLS, Piece, RowSegments};

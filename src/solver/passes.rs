@@ -4,7 +4,7 @@
 //! reads the same fields at once. Sums are taken for each body: Σ B f of its modes B from Σ f and Σ j f of every
 //! piece.
 
-use super::{BandSums, Bands, Line, ModeCoefficients, PIECE_CELLS, Piece, Problem, RowSegments, Solution, Solve};
+use super::{BandSums, Bands, ModeCoefficients, PIECE_CELLS, Piece, Problem, RowModes, RowSegments, Solution, Solve};
 use crate::sum::{most, sum, sum_of_pairs};
 
 /// The numbers j = 0, 1, … of the cells of a piece, as values.
@@ -237,7 +237,7 @@ fn fill_residual(
     motions: &[ModeCoefficients],
     v: &[f64],
     r: &mut [f64],
-) -> Line {
+) -> RowModes {
     let (line, c) = (problem.line(*body, cells.start), problem.compliance);
     map(line.of(motions[*body]), r, [v, &problem.gap[cells.clone()]], |_, v, h, motion| motion - (c * v + h));
     line
@@ -252,7 +252,7 @@ pub(crate) fn add(x: &mut [f64], a: f64, y: &[f64]) {
 
 /// Adds Σ B f over a piece.
 #[inline]
-fn add_modes(sums: &mut [f64; 3], line: &Line, f: &[f64]) {
+fn add_modes(sums: &mut [f64; 3], line: &RowModes, f: &[f64]) {
     let moment = if line.step != 0.0 { sum_of_pairs(f, &NUMBERS[..f.len()], |f, j| f * j) } else { 0.0 };
     let part = line.sums(sum(f), moment);
     sums.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);

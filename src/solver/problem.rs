@@ -2,7 +2,7 @@
 
 use std::sync::atomic::AtomicBool;
 
-use super::{Cut, Freedom, Line, ModeCoefficients, Modes};
+use super::{Cut, Freedom, ModeCoefficients, Modes, RowModes};
 use crate::kernel::{LocalKernel, Workspace};
 use crate::parallel::Rows;
 use crate::sum::greatest;
@@ -75,7 +75,7 @@ impl<'a> Problem<'a> {
 
     /// The free modes of a body along a row, from cell `k` on.
     #[inline]
-    pub(crate) fn line(&self, body: usize, k: usize) -> Line {
+    pub(crate) fn line(&self, body: usize, k: usize) -> RowModes {
         self.modes(body).line(k)
     }
 

@@ -86,7 +86,7 @@ pub(crate) struct Modes<'a> {
 
 /// The free modes of a body along a row: first + (0, 0, step) j on the j-th cell of a piece.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Line {
+pub(crate) struct RowModes {
     first: [f64; 3],
     pub(crate) step: f64,
 }
@@ -116,12 +116,12 @@ impl<'a> Modes<'a> {
 
     /// The free modes along the row of cell `k`, from there on. A body that does not tilt has the mode 1, even if it
     /// is held.
-    pub(crate) fn line(&self, k: usize) -> Line {
+    pub(crate) fn line(&self, k: usize) -> RowModes {
         if !self.freedom.tilts() {
-            return Line::UPRIGHT;
+            return RowModes::UPRIGHT;
         }
         let step = if self.freedom.tilt[1] { self.grid.spacing()[1] / self.scale[1] } else { 0.0 };
-        Line { first: self.at(k), step }
+        RowModes { first: self.at(k), step }
     }
 
     /// Which of ω, α1 and α2 are free.
@@ -155,14 +155,14 @@ impl<'a> Modes<'a> {
     }
 }
 
-impl Line {
+impl RowModes {
     /// The line of a body that does not tilt.
-    pub(crate) const UPRIGHT: Line = Line { first: [1.0, 0.0, 0.0], step: 0.0 };
+    pub(crate) const UPRIGHT: RowModes = RowModes { first: [1.0, 0.0, 0.0], step: 0.0 };
 
     /// The same modes, with j counted from elsewhere.
-    pub(super) fn from(self, j: f64) -> Line {
+    pub(super) fn from(self, j: f64) -> RowModes {
         let [mode0, mode1, mode2] = self.first;
-        Line { first: [mode0, mode1, mode2 + self.step * j], step: self.step }
+        RowModes { first: [mode0, mode1, mode2 + self.step * j], step: self.step }
     }
 
     /// A motion on the first cell, and its increase from cell to cell.
@@ -180,7 +180,7 @@ impl Line {
 
 impl Gram {
     /// Adds Σ w B Bᵀ of a line, from Σ w, Σ w j and Σ w j².
-    pub(super) fn add(&mut self, line: &Line, weight: f64, moment: f64, square: f64) {
+    pub(super) fn add(&mut self, line: &RowModes, weight: f64, moment: f64, square: f64) {
         let modes = line.first;
         for (m, row) in self.entries.iter_mut().enumerate() {
             let part = line.sums(weight, moment).map(|sum| modes[m] * sum);
@@ -194,7 +194,7 @@ impl Gram {
     }
 
     /// Adds B Bᵀ of the first cells of a line.
-    pub(crate) fn add_cells(&mut self, line: &Line, cells: usize) {
+    pub(crate) fn add_cells(&mut self, line: &RowModes, cells: usize) {
         let count = cells as f64;
         // about their middle Σ j vanishes
         self.add(&line.from(0.5 * (count - 1.0)), count, 0.0, count * (count * count - 1.0) / 12.0);

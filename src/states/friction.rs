@@ -161,7 +161,7 @@ impl StatesContact {
                 _ => most,
             }
         };
-        self.sheared(of).unwrap_or(0.0)
+        self.with_friction_state(of).unwrap_or(0.0)
     }
 
     /// [`StatesContact::step`] with a load along the surface, as those of [`StatesContact::sheared_by`].
@@ -192,29 +192,29 @@ impl StatesContact {
     }
 
     /// What the levels have along the surface, if there is friction.
-    fn sheared<T>(&self, of: impl Fn(&CoulombOnStates, &Shear) -> T) -> Option<T> {
+    fn with_friction_state<T>(&self, of: impl Fn(&CoulombOnStates, &Shear) -> T) -> Option<T> {
         Some(of(self.scene.friction.as_ref()?, self.levels.shear.as_ref()?))
     }
 
     /// Force along the surface \[N\]; 0 without friction.
     pub fn lateral_force(&self) -> f64 {
-        self.sheared(|friction, shear| friction.coefficient * shear.force).unwrap_or(0.0)
+        self.with_friction_state(|friction, shear| friction.coefficient * shear.force).unwrap_or(0.0)
     }
 
     /// Displacement of the body along the surface \[m\], how far it has slid included.
     pub fn lateral_displacement(&self) -> f64 {
-        self.sheared(|friction, shear| friction.of_displacement() * shear.displacement()).unwrap_or(0.0)
+        self.with_friction_state(|friction, shear| friction.of_displacement() * shear.displacement()).unwrap_or(0.0)
     }
 
     /// How far the whole contact has slid \[m\], beyond its partial slip; of bodies apart, how far they moved freely.
     pub fn slid(&self) -> f64 {
-        self.sheared(|friction, shear| friction.of_displacement() * shear.slid).unwrap_or(0.0)
+        self.with_friction_state(|friction, shear| friction.of_displacement() * shear.slid).unwrap_or(0.0)
     }
 
     /// Level s up to which the contact sticks \[m²\]: 0 where all of it slides, [`StatesContact::level`] where nothing
     /// slips and without friction.
     pub fn stick_level(&self) -> f64 {
-        self.sheared(|_, shear| shear.stick).unwrap_or(self.level())
+        self.with_friction_state(|_, shear| shear.stick).unwrap_or(self.level())
     }
 
     /// Area that sticks \[m²\].
@@ -224,7 +224,7 @@ impl StatesContact {
 
     /// Where the work along the surface went; all 0 without friction.
     pub fn lateral_work(&self) -> LateralWork {
-        let found = self.sheared(|friction, shear| {
+        let found = self.with_friction_state(|friction, shear| {
             let unit = friction.coefficient * friction.of_displacement();
             LateralWork::new(unit * shear.work, unit * shear.lost, unit * self.levels.stored_along())
         });

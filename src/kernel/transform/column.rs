@@ -6,7 +6,7 @@ use num_complex::Complex64;
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 
 use super::SpectralOperator;
-use crate::kernel::lines::Line;
+use crate::kernel::transform::line::LineTransform;
 
 /// The transform: a real one of half the work, or, of a folded column, the transform of folded lines.
 #[derive(Clone)]
@@ -26,7 +26,7 @@ pub(super) struct ColumnWorkspace {
 }
 
 impl Column {
-    pub(super) fn new(line: &Line) -> Column {
+    pub(super) fn new(line: &LineTransform) -> Column {
         if line.is_folded() {
             return Column::Folded;
         }
@@ -34,7 +34,7 @@ impl Column {
         Column::Real(planner.plan_fft_forward(line.len()), planner.plan_fft_inverse(line.len()))
     }
 
-    pub(super) fn workspace(&self, line: &Line) -> ColumnWorkspace {
+    pub(super) fn workspace(&self, line: &LineTransform) -> ColumnWorkspace {
         let zeros = |count| vec![Complex64::default(); count];
         match self {
             Column::Real(forward, inverse) => ColumnWorkspace {

@@ -13,16 +13,17 @@
 
 mod column;
 mod distributed_transform;
+mod line;
 mod memory;
 mod tasks;
 mod tiles;
 mod workspace;
 
 use super::layout::Layout;
-use super::lines::Line;
 use crate::parallel::{TILE, for_each_share, rows_in_a_tile};
 use column::Column;
 pub(crate) use distributed_transform::Shares;
+use line::LineTransform;
 use tasks::{Columns, ColumnsInPlace, RowsForward, RowsInverse, multiply_apart};
 use workspace::Lane;
 pub(crate) use workspace::TransformWorkspace;
@@ -34,8 +35,8 @@ const AREA: usize = TILE * TILE;
 #[derive(Clone)]
 pub(crate) struct SpectralOperator {
     layout: Layout,
-    rows: Line,
-    columns: Line,
+    rows: LineTransform,
+    columns: LineTransform,
     /// For each coefficient of a row, the independent values of its column, divided by the normalisation of the
     /// transforms.
     spectrum: Vec<f64>,
@@ -53,7 +54,7 @@ impl SpectralOperator {
         shares: Option<Shares>,
         symbol: impl Fn(usize, usize) -> f64,
     ) -> SpectralOperator {
-        let [columns, rows] = [0, 1].map(|axis| Line::new(layout.line(axis), layout.folded[axis]));
+        let [columns, rows] = [0, 1].map(|axis| LineTransform::new(layout.line(axis), layout.folded[axis]));
         let scale = 1.0 / (rows.norm() * columns.norm());
         let own = shares.as_ref().map_or(0..rows.independent(), |shares| shares.columns(&layout));
         let mut spectrum = Vec::with_capacity(own.len() * columns.independent());

@@ -3,7 +3,7 @@
 use num_complex::Complex64;
 
 use super::{AREA, Lane, SpectralOperator};
-use crate::kernel::lines::{separate, unite};
+use crate::kernel::transform::line::{separate, unite};
 use crate::parallel::TILE;
 use crate::parallel::Task;
 

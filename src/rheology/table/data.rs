@@ -168,7 +168,7 @@ pub(super) const SCATTER: Scatter =
 pub(super) const LEAST_ROWS: usize = 4;
 
 /// Sorts the rows of a table. Returns its samples, in ascending order.
-pub(crate) fn validated(layout: Layout, rows: &mut [MeasuredRow]) -> Result<Vec<Sample>> {
+pub(crate) fn sorted_samples(layout: Layout, rows: &mut [MeasuredRow]) -> Result<Vec<Sample>> {
     let Layout { table, abscissa, columns, is_over_time } = layout;
     for MeasuredRow { place, x, values, .. } in &*rows {
         let check = |column, value, inside, allowed| {
@@ -201,7 +201,7 @@ pub(crate) fn validated(layout: Layout, rows: &mut [MeasuredRow]) -> Result<Vec<
 /// The maximum deviation of sorted rows from a monotone curve: an error where it exceeds what the scatter of the
 /// rows around explains, or the relative `scatter`, if it is stated; a warning, if one row of a hundred or fewer
 /// does, by a tenth at most.
-pub(crate) fn wrong_way(
+pub(crate) fn check_monotone(
     layout: Layout,
     rows: &[MeasuredRow],
     scatter: Option<f64>,

@@ -21,7 +21,7 @@ use crate::rheology::{CreepSeries, Tension};
 use crate::rounded::rounded;
 use crate::values::Counted;
 pub use data::Experiment;
-use data::{Deformation, LEAST_ROWS, MeasuredRow, averaged_repeats, validated, wrong_way};
+use data::{Deformation, LEAST_ROWS, MeasuredRow, averaged_repeats, check_monotone, sorted_samples};
 use measured::FITTING;
 use uncertainty::INTERVAL;
 
@@ -170,7 +170,7 @@ impl Measurements {
         let given = rows.len();
         let mut rows = averaged_repeats(rows);
         let averaged = given - rows.len();
-        let samples = validated(experiment.layout(), &mut rows)?;
+        let samples = sorted_samples(experiment.layout(), &mut rows)?;
         let (deformation, scatter, columns) = (Deformation::Unnamed, None, Vec::new());
         Ok(Measurements { experiment, deformation, rows, averaged, samples, scatter, columns })
     }
@@ -223,7 +223,7 @@ impl Measurements {
     fn fitted(&self, deformation: Deformation) -> Result<CreepSeries> {
         self.deformation.accepts(deformation)?;
         let (layout, samples) = (self.experiment.layout(), &self.samples);
-        let (wrong_way, knock) = wrong_way(layout, &self.rows, self.scatter)?;
+        let (wrong_way, knock) = check_monotone(layout, &self.rows, self.scatter)?;
         let time = |x: f64| if layout.is_over_time { x } else { 1.0 / x };
         let positive = || samples.iter().map(|sample| time(sample.x)).filter(|t| *t > 0.0);
         let (first, last) = (positive().fold(f64::INFINITY, f64::min), positive().fold(0.0, f64::max));

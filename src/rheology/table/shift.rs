@@ -187,7 +187,7 @@ impl<'a> Pair<'a> {
             (at, self.error(at, &[column], &[residual; 2]))
         });
         let (between, by_error) = ((one.0 - other.0).abs(), one.1.hypot(other.1));
-        if between > 0.115_f64.max(3.0 * by_error) { between } else { 0.0 }
+        if between > (0.05 * std::f64::consts::LN_10).max(3.0 * by_error) { between } else { 0.0 }
     }
 
     fn differences(&self, shift: f64, columns: &[usize], mut take: impl FnMut(Difference)) {

@@ -91,7 +91,7 @@ impl Operators<'_> {
     }
 
     /// Applies c K, which is about the inverse of M/c.
-    pub(super) fn smooth(&mut self, field: &mut [f64]) {
+    pub(super) fn precondition(&mut self, field: &mut [f64]) {
         let Operators { balance: Balance { compliance: c, soft, mean, .. }, window, counts, .. } = self;
         counts.convolutions += 1;
         let add = (*soft - *c * mean.compliance) * window.kernel.rows().sum(field) / field.len() as f64;

@@ -238,7 +238,7 @@ impl Descent<'_> {
             None => (trail.least < DESCENT.suspect || trail.iteration == 0) && stiffness < DESCENT.near_fold,
         };
         if is_suspect && trail.looks < DESCENT.looks {
-            let curvature = self.soften(trail.looks);
+            let curvature = self.find_softest(trail.looks);
             trail.looks += 1;
             (*gradient, trail.energy, trail.last) = (self.gradient(), self.energy(), 0.0);
             if curvature < DESCENT.unstable {

@@ -13,12 +13,12 @@ use crate::sum::scattered;
 const DIFFERENCE: f64 = 1e-4;
 
 /// s of a gap.
-fn pulls(law: &dyn Attraction, h: f64) -> f64 {
+fn attraction_at(law: &dyn Attraction, h: f64) -> f64 {
     if h.is_finite() { law.traction(h.max(0.0)) } else { 0.0 }
 }
 
 /// −s′ of an open gap.
-fn softens(law: &dyn Attraction, h: f64) -> f64 {
+fn softening_at(law: &dyn Attraction, h: f64) -> f64 {
     if !(h > 0.0 && h.is_finite()) {
         return 0.0;
     }
@@ -34,7 +34,7 @@ impl Descent<'_> {
         let (law, gap, rows) = (problem.law, &trial.gap, window.kernel.rows());
         let Solution { potential: x, attraction: q, pressure: r, .. } = &mut trial.solution;
         for_each_band([&mut *r], |first, [r]| {
-            r.iter_mut().zip(first..).for_each(|(r, k)| *r = q[k] + pulls(law, gap[k] + x[k]));
+            r.iter_mut().zip(first..).for_each(|(r, k)| *r = q[k] + attraction_at(law, gap[k] + x[k]));
         });
         let is_open = |k: usize| gap[k] + x[k] > 0.0;
         let mut multiplier = 0.0;
@@ -76,7 +76,7 @@ impl Descent<'_> {
         let (gap, Solution { potential: x, pressure: r, .. }) = (&trial.gap, &trial.solution);
         let InGap { direction, traction: last_r, lift: y, .. } = &mut own.in_gap;
         y.copy_from_slice(r);
-        operators.smooth(y);
+        operators.precondition(y);
         let (rows, balance) = (operators.rows(), &operators.balance);
         let is_free = |k: usize| gap[k] + x[k] > 0.0 || r[k] < 0.0;
         let [sum, free] = rows.sum_terms(|k| is_free(k).then_some([y[k], 1.0]));
@@ -120,8 +120,8 @@ impl Descent<'_> {
         let [start, convex, softened] = rows.sum_terms(|k| {
             (d[k] != 0.0).then(|| {
                 let h = gap[k] + x[k];
-                let s = pulls(law, h);
-                let softened = if h > 0.0 { (s - pulls(law, h + small * d[k])) * d[k] / small } else { 0.0 };
+                let s = attraction_at(law, h);
+                let softened = if h > 0.0 { (s - attraction_at(law, h + small * d[k])) * d[k] / small } else { 0.0 };
                 [(q[k] + s - gradient.multiplier) * d[k], d[k] * image[k], softened]
             })
         });
@@ -155,7 +155,7 @@ impl Descent<'_> {
         let (x, q, gap) = (&trial.solution.potential, &trial.solution.attraction, &trial.gap);
         let d = &own.in_gap.direction;
         let [attracted] = operators.rows().sum_terms(|k| {
-            let s = || pulls(problem.law, gap[k] + x[k] + length * d[k]);
+            let s = || attraction_at(problem.law, gap[k] + x[k] + length * d[k]);
             (d[k] != 0.0).then(|| [(q[k] + s() - gradient.multiplier) * d[k]])
         });
         attracted
@@ -176,7 +176,7 @@ impl Descent<'_> {
         motion.approach -= initial.datum;
         let rise = |k: usize| {
             let before = initial.above[k] + u[k] - motion.at(state.held.region.center(k));
-            softens(law, trial.gap[k] + now[k]) - softens(law, before)
+            softening_at(law, trial.gap[k] + now[k]) - softening_at(law, before)
         };
         let most = state.held.region.rows().greatest((0..u.len()).map(rise).fold(0.0, f64::max));
         state.held.current.solution.stiffness - most / problem.scene.ground.softening
@@ -189,13 +189,13 @@ impl Descent<'_> {
     /// The search begins at random: the last direction has the symmetry of the state, and may have none of the one that
     /// breaks it. Each look of a descent begins anew: of two modes that are soft alike the last one has found a mix, and
     /// would find none of what is left.
-    pub(super) fn soften(&mut self, look: usize) -> f64 {
+    pub(super) fn find_softest(&mut self, look: usize) -> f64 {
         let Descent { problem, operators, own, trial } = self;
         let (law, gap, rows) = (problem.law, &trial.gap[..], operators.rows().clone());
         let Solution { potential, attraction: q, pressure: softening, .. } = &mut trial.solution;
         let x = &potential[..];
         for_each_band([&mut *softening], |first, [softening]| {
-            softening.iter_mut().zip(first..).for_each(|(softening, k)| *softening = softens(law, gap[k] + x[k]));
+            softening.iter_mut().zip(first..).for_each(|(softening, k)| *softening = softening_at(law, gap[k] + x[k]));
         });
         let InGap { direction: v, image, lift: turn, traction: image_of_turn } = &mut own.in_gap;
         let scatter = |k: usize| 2.0 * scattered(look * gap.len() + k) - 1.0;
@@ -254,9 +254,9 @@ impl Convex for OpenCells<'_, '_> {
         self.operators.stiffen(v, image);
     }
 
-    fn smooth(&mut self, field: &mut [f64]) {
+    fn precondition(&mut self, field: &mut [f64]) {
         self.level(field);
-        self.operators.smooth(field);
+        self.operators.precondition(field);
         field.iter_mut().enumerate().filter(|(k, _)| !self.is_free(*k)).for_each(|(_, y)| *y = 0.0);
         self.level(field);
     }

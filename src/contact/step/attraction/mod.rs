@@ -67,10 +67,14 @@ impl AttractedStep<'_> {
         begin(&self.state.held, trial, self.step.request());
         let cells = trial.gap.len();
         trial.solution.attraction.resize(cells, 0.0);
-        self.iterate(attracted.get_or_insert_with(|| Box::new(Attracted::new(cells, &window.kernel))), window, trial)
+        self.solve_and_report(
+            attracted.get_or_insert_with(|| Box::new(Attracted::new(cells, &window.kernel))),
+            window,
+            trial,
+        )
     }
 
-    fn iterate(&self, own: &mut Attracted, window: &mut Window, trial: &mut Trial) -> Result<()> {
+    fn solve_and_report(&self, own: &mut Attracted, window: &mut Window, trial: &mut Trial) -> Result<()> {
         let (state, scene, mut counts) = (self.state, self.scene, Counts::default());
         own.report = PassReport::default();
         trial.solution.stiffness = 0.0;

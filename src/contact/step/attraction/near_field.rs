@@ -95,7 +95,7 @@ impl Descent<'_> {
         if problem.wanted.tilts() {
             self.with_near_field(|descent| descent.operators.free_tilts(problem));
         }
-        self.split();
+        self.split_off_far_field();
         let (c, mut last, mut relaxation) = (problem.compliance, f64::INFINITY, None);
         for _ in 0..ROUNDS.most {
             problem.open_gap(self.operators.window, self.trial);
@@ -103,10 +103,10 @@ impl Descent<'_> {
                 gap.iter_mut().zip(&self.own.far[first..]).for_each(|(gap, far)| *gap += c * far);
             });
             self.with_near_field(Descent::run)?;
-            let (most, next) = self.correct(relaxation);
+            let (most, next) = self.correct_far_field(relaxation);
             let change = c * most * problem.scene.ground.softening / problem.law.traction(0.0);
             if change <= ROUNDS.change * problem.tolerance(self.own.softness) {
-                self.join();
+                self.add_far_field();
                 return Ok(());
             }
             (last, relaxation) = (change, Some(next));
@@ -144,7 +144,7 @@ impl Descent<'_> {
     }
 
     /// Adds the far field of z − s to N (z − s).
-    fn join(&mut self) {
+    fn add_far_field(&mut self) {
         let Attracted { far, change, .. } = &*self.own;
         let parts = far.iter().zip(change);
         self.trial.solution.potential.iter_mut().zip(parts).for_each(|(v, (far, change))| *v += far + change);
@@ -153,7 +153,7 @@ impl Descent<'_> {
     /// The change of F (z − s), and the part of it that Aitken's rule takes after two rounds (Irons & Tuck, Int. J. Numer.
     /// Methods Eng. 1, 1969): where contact and attraction take most of the grid, F is no small part. Returns
     /// the maximum |ΔF (z − s)| and the part; `relaxation` is that of the round before.
-    fn correct(&mut self, relaxation: Option<f64>) -> (f64, f64) {
+    fn correct_far_field(&mut self, relaxation: Option<f64>) -> (f64, f64) {
         let Descent { own, operators, trial, .. } = self;
         let potential = &trial.solution.potential;
         let (exact, far, changes) = own.image_of_net(&trial.solution, operators.window);
@@ -172,7 +172,7 @@ impl Descent<'_> {
     }
 
     /// Writes N (z − s) to the potential, and what it lacks of K (z − s) to the far field.
-    fn split(&mut self) {
+    fn split_off_far_field(&mut self) {
         self.with_near_field(|Descent { own, operators, trial, .. }| {
             let (near, far, _) = own.image_of_net(&trial.solution, operators.window);
             operators.counts.convolutions += 1;

@@ -13,7 +13,7 @@ pub(super) trait Convex: Sync {
     /// Writes M v.
     fn stiffen(&mut self, v: &[f64], image: &mut [f64]);
     /// Applies an inverse of M, or nearly, on the free cells.
-    fn smooth(&mut self, field: &mut [f64]);
+    fn precondition(&mut self, field: &mut [f64]);
 }
 
 /// A direction v, and M v.
@@ -88,7 +88,7 @@ pub(super) fn softest(
     gradient: &mut [f64],
 ) -> Option<f64> {
     let [d, image] = &mut v;
-    convex.smooth(d);
+    convex.precondition(d);
     convex.stiffen(d, image);
     turn.iter_mut().for_each(|field| field.fill(0.0));
     let [softened, stiffened] = rows.sum_terms(|k| Some([w[k] * d[k] * d[k], d[k] * image[k]]));
@@ -103,7 +103,7 @@ pub(super) fn softest(
             let cells = gradient.iter_mut().zip(first..);
             cells.for_each(|(g, k)| *g = if convex.is_free(k) { quotient.gradient(w, now, k) } else { 0.0 });
         });
-        convex.smooth(gradient);
+        convex.precondition(gradient);
         // the next turn is conjugate to the last in the bend of the quotient
         let [steepest, of_last, of_next] = rows.sum_terms(|k| {
             let bend = quotient.gradient(w, last, k);

@@ -25,7 +25,7 @@ fn travelled(now: f64, before: f64, far: f64) -> f64 {
 /// averaged over it. Their springs and dashpots have no more and no less of it.
 fn taken(history: &mut GroupHistory, groups: &[Group], Shear { trial, mean, .. }: &mut Shear) -> f64 {
     history.mean_shear(trial, mean);
-    let Some(before) = history.sheared() else { return 0.0 };
+    let Some(before) = history.tangential_displacements() else { return 0.0 };
     let (mut below, mut sum) = ([0.0; 2], 0.0);
     for k in 0..groups.len() {
         let ([width, depth], stress, moved) = (widths(groups, k), mean[k], trial[k] - before[k]);
@@ -41,7 +41,7 @@ impl Levels {
         let Slipping { stick, ref met, share, sense, left } = *slipping;
         let (compliance, level) = (self.history.rule().compliance(), self.level);
         let Levels { history, groups, shear: Some(shear), .. } = self else { return };
-        let Some(now) = history.sheared() else { return };
+        let Some(now) = history.tangential_displacements() else { return };
         let (before, stuck) = (shear.force, shear.stick);
         let (mut force, mut motion, mut lost, mut begun, mut from) = (0.0, 0.0, 0.0, 0.0, edge);
         // of the levels above, ∫ θ dl and ∫ θ dδ: in the mean of the step, and while those below begin to slip
@@ -103,7 +103,7 @@ impl Levels {
     /// before the step and the edges after it, count as `slipping`; it is no less than the second.
     pub(in crate::states) fn shear_distance(&self, other: &Levels, edge: f64, slipping: f64) -> Option<[f64; 5]> {
         let (one, two) = (self.shear.as_ref()?, other.shear.as_ref()?);
-        let (own, others) = (self.history.sheared()?, other.history.sheared()?);
+        let (own, others) = (self.history.tangential_displacements()?, other.history.tangential_displacements()?);
         let stick = one.stick.min(two.stick);
         let [least, most] = [f64::min, f64::max].map(|of| [self.level, other.level].into_iter().fold(edge, of));
         let passed = least * (1.0 + ROUNDING)..=most * (1.0 + ROUNDING);

@@ -141,7 +141,7 @@ impl Levels {
     }
 
     pub(super) fn make_room_for_shear(&mut self) {
-        self.history.shear(GROUPS);
+        self.history.add_tangential(GROUPS);
         let [trial, tractions, mean] = [(); 3].map(|()| Vec::with_capacity(GROUPS));
         self.shear = Some(Shear { trial, tractions, mean, ..Shear::default() });
     }
@@ -158,7 +158,7 @@ impl Levels {
 
     /// ½ Σ ∫∫ a(l) a(l′) κ(max(l, l′)) dl dl′, the energy of springs, with κ = dδ/dl and a = √E∞ U and q_i/√E_i.
     pub(in crate::states) fn stored_along(&self) -> f64 {
-        let Some(now) = self.history.sheared() else { return 0.0 };
+        let Some(now) = self.history.tangential_displacements() else { return 0.0 };
         let of = |a: &[f64]| {
             let (mut below, mut sum) = (0.0, 0.0);
             for (k, a) in a.iter().enumerate() {
@@ -182,7 +182,7 @@ impl Levels {
     /// Whether all levels up to one that were held can stick, |θ| ≤ w, so that those that slip are the ones at the
     /// edge. If not, the maximum of |θ| over w.
     pub(super) fn sticks_to(&self, level: f64) -> Result<(), f64> {
-        let (Some(now), Some(shear)) = (self.history.sheared(), &self.shear) else { return Ok(()) };
+        let (Some(now), Some(shear)) = (self.history.tangential_displacements(), &self.shear) else { return Ok(()) };
         let held = self.groups.partition_point(|group| group.top < self.level.min(level) * (1.0 - ROUNDING)) + 1;
         let over = |k: usize| {
             let (holds, presses) = ((now[k] - shear.trial[k]).abs(), 1.0 - self.trial[k]);
@@ -251,7 +251,7 @@ impl Levels {
         let compliance = history.rule().compliance();
         let slid = wish.weights[1] * shear.slid;
         let (mut needed, mut size) = (wish.sum - slid, wish.sum.abs() + slid.abs());
-        let Some(now) = history.sheared() else { return 0.0 };
+        let Some(now) = history.tangential_displacements() else { return 0.0 };
         let moved = now.iter().zip(&shear.trial).zip(&mut shear.tractions);
         for (k, ((&now, &free), traction)) in moved.enumerate() {
             let (acts, displacement) = if k < stick { ((now - free) / compliance, now) } else { (0.0, free) };

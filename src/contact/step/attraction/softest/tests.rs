@@ -28,7 +28,7 @@ impl Convex for Dense {
         image.copy_from_slice(&apply(&self.stiffness, v));
     }
 
-    fn smooth(&mut self, field: &mut [f64]) {
+    fn precondition(&mut self, field: &mut [f64]) {
         let smooth = apply(&self.compliance, field);
         (0..CELLS).for_each(|k| field[k] = if self.free[k] { smooth[k] } else { 0.0 });
     }

@@ -17,7 +17,7 @@ use rustfft::{Fft, FftPlanner};
 
 /// The transform along one axis.
 #[derive(Clone)]
-pub(crate) struct Line {
+pub(crate) struct LineTransform {
     length: usize,
     forward: Arc<dyn Fft<f64>>,
     inverse: Arc<dyn Fft<f64>>,
@@ -25,11 +25,11 @@ pub(crate) struct Line {
     twist: Vec<Complex64>,
 }
 
-impl Line {
-    pub(crate) fn new(length: usize, folded: bool) -> Line {
+impl LineTransform {
+    pub(crate) fn new(length: usize, folded: bool) -> LineTransform {
         let mut planner = FftPlanner::new();
         let root = |k: usize| Complex64::from_polar(1.0, -PI * k as f64 / (2 * length) as f64);
-        Line {
+        LineTransform {
             length,
             forward: planner.plan_fft_forward(length),
             inverse: planner.plan_fft_inverse(length),
@@ -135,7 +135,7 @@ impl Line {
         }
     }
 
-    /// Transforms coefficients to values, multiplied by [`Line::norm`].
+    /// Transforms coefficients to values, multiplied by [`LineTransform::norm`].
     #[inline(always)]
     pub(crate) fn inverse(&self, buffer: &mut [Complex64], scratch: &mut [Complex64]) {
         if self.is_folded() {
@@ -155,7 +155,7 @@ impl Line {
 
     /// Multiplies the real and the imaginary parts of the coefficients of a folded complex line by a spectrum each in
     /// one pass, between
-    /// [`Line::bare_forward`] and [`Line::bare_inverse`].
+    /// [`LineTransform::bare_forward`] and [`LineTransform::bare_inverse`].
     #[inline(always)]
     pub(crate) fn multiply_folded(&self, buffer: &mut [Complex64], first: &[f64], second: &[f64]) {
         let last = buffer.len();
@@ -256,7 +256,7 @@ mod tests {
     fn lines_match_their_sums() {
         for folded in [false, true] {
             for (cells, length) in [(1, 1), (1, 2), (3, 4), (3, 5), (5, 6), (6, 6), (7, 10), (15, 15), (40, 42)] {
-                let (line, x) = (Line::new(length, folded), signal(cells));
+                let (line, x) = (LineTransform::new(length, folded), signal(cells));
                 let mut buffer = vec![Complex64::new(f64::NAN, f64::NAN); length];
                 let mut scratch = vec![Complex64::default(); line.scratch()];
                 line.pad(&mut buffer, cells);
@@ -282,7 +282,7 @@ mod tests {
     #[test]
     fn two_real_lines_are_one_complex_one() {
         for length in [1, 2, 5, 8] {
-            let line = Line::new(length, false);
+            let line = LineTransform::new(length, false);
             let mut scratch = vec![Complex64::default(); line.scratch()];
             let mut both = signal(length);
             let mut parts =
