@@ -7,7 +7,6 @@ use crate::contact::{Computation, Scene, State};
 #[cfg(feature = "checkpoint")]
 use crate::equilibrium::Indenter;
 use crate::fields::{About, Fields, Surface, View};
-use crate::geometry::Missed;
 
 /// A rigid indenter pressed onto a creeping half-space: the pressure between them, the area they touch
 /// on, and how both change with time.
@@ -48,8 +47,6 @@ pub struct ViscoelasticContact {
     pub(crate) scene: Arc<Scene>,
     /// The state, and the window and the trial that compute steps.
     pub(crate) computation: Computation,
-    /// What the grid misses of the waves of the shapes.
-    pub(crate) missed: Missed,
     /// Fields on the whole grid, for users to read.
     pub(crate) view: View,
     /// The indenter as built, by which checkpoints tell scenes apart.
@@ -61,7 +58,7 @@ pub struct ViscoelasticContact {
 }
 
 impl ViscoelasticContact {
-    pub(crate) fn new(scene: Scene, computation: Computation, missed: Missed) -> ViscoelasticContact {
+    pub(crate) fn new(scene: Scene, computation: Computation) -> ViscoelasticContact {
         let mut view = View::default();
         view.refresh(&computation.state.held);
         ViscoelasticContact {
@@ -69,7 +66,6 @@ impl ViscoelasticContact {
             #[cfg(feature = "checkpoint")]
             built: Arc::clone(&computation.state.held.indenter),
             computation,
-            missed,
             view,
             saved_run: None,
         }

@@ -96,9 +96,9 @@ impl ElasticBuilder {
     pub fn build(self) -> Result<ElasticContact> {
         let (ground, compliance) = self.ground()?;
         let gaps = self.gaps.into_iter().collect::<Result<Vec<_>>>()?;
-        let indenter = Arc::new(Indenter::new(Gap::new(gaps, &self.grid)?, ground.bodies));
         let missed = Missed::of(&self.waves, &self.grid, ground.kernel.periodic_axes());
-        ElasticContact::new(Arc::new(ground), compliance, indenter, missed)
+        let indenter = Indenter::new(Gap::new(gaps, &self.grid)?, ground.bodies).missing(missed);
+        ElasticContact::new(Arc::new(ground), compliance, Arc::new(indenter))
     }
 
     fn ground(&self) -> Result<(Ground, f64)> {

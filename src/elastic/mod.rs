@@ -27,7 +27,6 @@ use crate::equilibrium::{modulus_of_no_solid, windowed};
 use crate::error::{Result, exact_length, finite};
 use crate::fields::report::StepReport;
 use crate::fields::{About, Fields, Surface, View};
-use crate::geometry::Missed;
 use crate::load::Load;
 use crate::parallel::in_pool;
 use crate::solver::Stop;
@@ -61,8 +60,6 @@ pub struct ElasticContact {
     ground: Arc<Ground>,
     /// C of u = u_old + C K p \[1/Pa\].
     compliance: f64,
-    /// What the grid misses of the waves of the shapes.
-    missed: Missed,
     own: Solver,
     view: View,
 }
@@ -96,7 +93,6 @@ impl ElasticContact {
         ground: Arc<Ground>,
         compliance: f64,
         indenter: Arc<Indenter>,
-        missed: Missed,
     ) -> Result<ElasticContact> {
         let folded = if ground.settings.symmetry { indenter.even_axes(&ground.grid) } else { [false; 2] };
         let region = ground.first_region(folded, &indenter, windowed(&ground));
@@ -105,7 +101,7 @@ impl ElasticContact {
         let own = Solver::new(&ground, Held::at_rest(indenter, region), None);
         let mut view = View::default();
         view.refresh(&own.held);
-        Ok(ElasticContact { ground, compliance, missed, own, view })
+        Ok(ElasticContact { ground, compliance, own, view })
     }
 
     /// Bytes of a contact that computes a region.
@@ -167,7 +163,7 @@ impl ElasticContact {
     fn report(&self, pressed: &Pressed) -> StepReport {
         let (ground, Solver { held, .. }) = (&self.ground, &self.own);
         let modulus = modulus_of_no_solid(self.compliance);
-        let figures = Figures { modulus, ..held.figures(ground, self.missed, pressed) };
+        let figures = Figures { modulus, ..held.figures(ground, pressed) };
         let warnings = held.warnings(ground, pressed.reach, &figures);
         StepReport { warnings, figures, ..StepReport::solved(self.fields()) }
     }
@@ -189,7 +185,13 @@ impl ElasticContact {
         if region == self.own.held.region {
             self.own.before = before;
         } else {
-            self.own = *self.own.transferred_to(&self.ground, region)?;
+            let mut own = self.own.transferred_to(&self.ground, region)?;
+            if own.before.is_none() {
+                // fields keep the last solution, beyond the old region as well
+                let potential = &own.held.current.solution.potential;
+                own.displacement = potential.iter().map(|v| self.compliance * v).collect();
+            }
+            self.own = *own;
             self.own.before = before;
             self.view.refresh(&self.own.held);
         }

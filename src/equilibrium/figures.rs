@@ -3,7 +3,6 @@
 use crate::equilibrium::pressed::Pressed;
 use crate::equilibrium::{Edge, Ground, Held, Indenter, Region, Warnings};
 use crate::extent::Extent;
-use crate::geometry::Missed;
 use crate::rounded::rounded;
 use crate::solver::RigidMotion;
 
@@ -87,9 +86,8 @@ pub(crate) fn modulus_of_no_solid(compliance: f64) -> Option<f64> {
 }
 
 impl Held {
-    /// The numbers of an elastic contact that presses so, with what the grid `missed` of its shapes. A call of all
-    /// ranks.
-    pub(crate) fn figures(&self, ground: &Ground, missed: Missed, pressed: &Pressed) -> Figures {
+    /// The numbers of an elastic contact that presses so. A call of all ranks.
+    pub(crate) fn figures(&self, ground: &Ground, pressed: &Pressed) -> Figures {
         let Held { indenter, region, current, .. } = self;
         let (pressure, datum) = (&current.solution.pressure, indenter.gap().datum);
         let motion = |body: usize| RigidMotion { approach: -datum, tilt: [0.0; 2] } + current.motions[body];
@@ -97,8 +95,8 @@ impl Held {
             max_slope: indenter.steepest(&ground.grid, region, pressure),
             compression: ground.compression(indenter, region, pressure, motion),
             cells_across: pressed.few,
-            cells_in_wave: missed.cells,
-            periods: missed.periods,
+            cells_in_wave: indenter.missed.cells,
+            periods: indenter.missed.periods,
             ..Figures::default()
         }
     }

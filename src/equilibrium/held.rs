@@ -106,8 +106,11 @@ impl Held {
 
     /// Whether the heights of the shapes are so far from 0 that their rounding counts, over the depth of the contact.
     pub(crate) fn heights_are_lost(&self, ground: &Ground) -> bool {
-        let datum = self.indenter.gap().datum;
-        let depth = self.current.motions.iter().map(|motion| motion.approach - datum).fold(0.0, f64::max);
+        let (datum, [l1, l2]) = (self.indenter.gap().datum, ground.grid.lengths());
+        // of a body that tilts, or is held by attraction, the origin may be above the first touch
+        let depth_of =
+            |m: &RigidMotion| (m.approach - datum).abs() + 0.5 * (m.tilt[0].abs() * l1 + m.tilt[1].abs() * l2);
+        let depth = self.current.motions.iter().map(depth_of).fold(0.0, f64::max);
         self.current.contact_cells > 0 && f64::EPSILON * datum.abs() > ground.settings.tolerance * depth
     }
 }

@@ -138,16 +138,17 @@ impl FrictionContact {
     /// # Errors
     /// As [`FrictionContact::step`], and [`Error::Cancelled`].
     pub fn step_unless(&mut self, cancelled: &AtomicBool, dt: f64, load: Load, shear: ShearLoad) -> Result<Outcome> {
-        let outcome = self.advance(cancelled, dt, load, shear, self.normal.settings().tolerance)?;
+        let to = (self.normal.time() + dt, dt);
+        let outcome = self.advance(cancelled, to, load, shear, self.normal.settings().tolerance)?;
         self.saved_run = None; // a run that a file held does not know of it
         Ok(outcome)
     }
 
-    /// Takes a step that is solved to a tolerance.
+    /// Takes a step to a time, of this length, that is solved to a tolerance.
     pub(super) fn advance(
         &mut self,
         cancelled: &AtomicBool,
-        dt: f64,
+        (time, dt): (f64, f64),
         load: Load,
         shear: ShearLoad,
         tolerance: f64,
@@ -156,7 +157,7 @@ impl FrictionContact {
         let normal = &mut self.normal;
         normal.snapshot_into(&mut self.start);
         let loads = [load];
-        let step = Step { cancelled: Some(cancelled), tolerance, ..normal.plan_next_step(dt, &loads)? };
+        let step = Step { cancelled: Some(cancelled), tolerance, ..normal.plan_next_step(time, dt, &loads)? };
         validate_loads(&normal.scene.ground, step.request())?;
         let length = step.interval.dt;
         let report = normal.take(step)?;
@@ -186,9 +187,6 @@ impl FrictionContact {
         let area = self.normal.grid().cell_area();
         history.predict(dt, Interpolant::Linear, free);
         let compliance = history.rule().compliance();
-        if compliance == 0.0 && cells > 0 {
-            return Err(StepError::NoElasticResponse { time, what: "a jump of a contact with friction" }.into());
-        }
         kernel.applications = [0; 2];
         // K (U_old − U_before), less the motion that is prescribed
         trial.gradient.iter_mut().zip(&*free).zip(history.displacements()).for_each(|((d, free), now)| *d = free - now);
@@ -204,6 +202,24 @@ impl FrictionContact {
         }
         if factor < 1.0 - ROUNDING {
             return Ok(Outcome::Slides { direction, over_limit: 1.0 / factor });
+        }
+        if compliance == 0.0 && cells > 0 {
+            // a jump of bodies without elastic response: they part, or keep what they carry
+            let is_met = problem.balance(problem.missing_loads(&solution.traction)) <= tolerance
+                && (0..3).all(|k| given[k].abs() <= ROUNDING * motion[k].abs());
+            match problem.touching().next() {
+                None => state.release(given),
+                Some(_) if is_met => {}
+                _ => {
+                    return Err(StepError::NoElasticResponse { time, what: "a jump of a contact with friction" }.into());
+                }
+            }
+            return Ok(Outcome::Holds(FrictionReport {
+                normal,
+                iterations: 0,
+                convolution_equivalents: 0.0,
+                residual: 0.0,
+            }));
         }
         trial.traction.copy_from_slice(&solution.traction);
         trial.cells.copy_from_slice(&solution.cells);

@@ -91,14 +91,25 @@ impl FrictionContact {
 
 impl Contact for FrictionContact {
     fn step_to(&mut self, time: f64, load: Load) -> Result<StepReport> {
-        let dt = time - self.normal().time();
+        self.step_to_unless(None, time, load)
+    }
+
+    fn step_to_unless(&mut self, cancelled: Option<&AtomicBool>, time: f64, load: Load) -> Result<StepReport> {
+        let (dt, never) = (time - self.normal().time(), AtomicBool::new(false));
         let shear = self.sheared_at(time, dt)?;
-        match self.advance(&AtomicBool::new(false), dt, load, shear, self.tolerance)? {
+        self.saved_run = None;
+        match self.advance(cancelled.unwrap_or(&never), (time, dt), load, shear, self.tolerance)? {
             Outcome::Holds(report) => Ok(report.normal),
             Outcome::Slides { direction, over_limit } => {
                 Err(Error::Slides { time, over_limit, direction: Some(direction) })
             }
         }
+    }
+
+    fn report(&self, dt: f64, _: Load) -> StepReport {
+        let computation = &self.normal.computation;
+        let time_error = (dt == 0.0).then_some(0.0);
+        StepReport { dt, ..self.normal.report(time_error, computation.pressed(&self.normal.scene)) }
     }
 
     fn time(&self) -> f64 {

@@ -39,6 +39,15 @@ impl State {
         }
     }
 
+    /// Bodies part at once, without elastic response: nothing is carried any more, and the displacement stays.
+    pub(super) fn release(&mut self, moved: [f64; 3]) {
+        let Solution { traction, cells, gradient, .. } = &mut self.solution;
+        [traction, gradient].into_iter().for_each(|field| field.fill(0.0));
+        cells.fill(Cell::Apart);
+        self.force = [0.0; 3];
+        self.motion.iter_mut().zip(moved).for_each(|(motion, moved)| *motion += moved);
+    }
+
     /// Takes its fields to a larger rectangle.
     pub(super) fn grow_to(&mut self, grown: Rectangle) {
         let (old, n) = (self.region, grown.len());

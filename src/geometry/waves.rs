@@ -14,6 +14,7 @@ pub struct Waves {
 
 /// What a grid misses of the waves of shapes: `None` where it holds them.
 #[derive(Debug, Clone, Copy, Default)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Missed {
     /// Cells in the shortest wave, if fewer than [`LEAST_CELLS`].
     pub(crate) cells: Option<f64>,

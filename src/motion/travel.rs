@@ -2,7 +2,7 @@ use std::sync::Arc;
 
 use crate::Grid;
 use crate::error::{Error, Result, finite};
-use crate::geometry::{Geometry, Shifted, added, evaluate};
+use crate::geometry::{Geometry, Shifted, added, evaluate, Waves};
 use crate::motion::Path;
 
 /// A shape that moves along a path, optionally over a fixed track.
@@ -62,6 +62,11 @@ impl Travel {
     /// As [`Travel::position`].
     pub fn shape_at(&self, t: f64) -> Result<Shifted> {
         Shifted::of(Arc::clone(&self.shape), self.position(t)?)
+    }
+
+    /// The waves of the track.
+    pub(crate) fn waves_of_track(&self) -> Vec<Waves> {
+        self.track.as_ref().map_or(Vec::new(), |track| track.waves())
     }
 
     /// The gap \[m\] on every cell, of the shape where it is and the track.

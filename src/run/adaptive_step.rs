@@ -7,7 +7,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::hereditary::{Outlook, TimeError};
 use crate::load::Load;
 use crate::run::Contact;
-use crate::run::control::Course;
+use crate::run::control::{Course, MOST_UNSOLVED};
 use crate::run::halves::is_pulled_off;
 use crate::run::outlook::excess;
 use crate::run::passage::Span;
@@ -15,8 +15,6 @@ use crate::run::step_control::{Proposal, StepControl};
 use crate::run::track::{Track, presses};
 use crate::traced;
 
-/// Number of shorter attempts after the solver has failed to converge.
-const MAX_SOLVER_RETRIES: u32 = 5;
 /// Order in the step length of the error due to cells that join the contact within the step: a shorter step ends sooner
 /// after they join.
 const ORDER_OF_KINKS: u32 = 2;
@@ -166,7 +164,7 @@ impl StepSearch<'_> {
         }
         let is_unsolved = error.kind() == ErrorKind::Convergence;
         self.failures += u32::from(is_unsolved);
-        is_unsolved && self.failures <= MAX_SOLVER_RETRIES
+        is_unsolved && self.failures <= MOST_UNSOLVED
     }
 
     /// Judges a step that was tried.

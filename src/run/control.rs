@@ -57,6 +57,9 @@ pub struct FieldReport {
     pub convolutions: usize,
 }
 
+/// Number of shorter attempts after the solver has failed to converge.
+pub(crate) const MOST_UNSOLVED: u32 = 5;
+
 /// The control of the steps of a contact, with what the run has found so far. It is public for bounds only: this
 /// module is private.
 pub trait Control<C>: Debug + Send + Sync {

@@ -141,6 +141,10 @@ impl<'a, C: Contact> Run<'a, C> {
             passage.look(Span { now, end }, history.at(now).main(), bends, |time| Ok(history.before(time).main()))?;
             turns.extend(passage.turns().map(|turn| turn.0));
         }
+        for along in self.contact().lateral() {
+            passage.look(Span { now, end }, along.at(now).main(), &[], |time| Ok(along.before(time).main()))?;
+            turns.extend(passage.turns().map(|turn| turn.0));
+        }
         turns.sort_by(f64::total_cmp);
         turns.dedup();
         Ok(turns)
@@ -184,7 +188,8 @@ fn crossing_within([mut low, mut high]: [(f64, f64); 2], same: f64, at: impl Fn(
             break;
         }
         let [a, b] = [weights[0] * low.1, weights[1] * high.1];
-        let share = if k % 3 == 2 || a == 0.0 || b == 0.0 { 0.5 } else { a / (a - b) };
+        let is_secant = k % 3 != 2 && a != 0.0 && b != 0.0 && a.is_finite() && b.is_finite();
+        let share = if is_secant { a / (a - b) } else { 0.5 };
         let least = (0.5 * same / width).min(0.5);
         let time = low.0 + share.clamp(least, 1.0 - least) * width;
         let beyond = at(time)?;

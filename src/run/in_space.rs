@@ -21,7 +21,7 @@ use crate::run::track::Track;
 impl Contact for ViscoelasticContact {
     fn step_to(&mut self, time: f64, load: Load) -> Result<StepReport> {
         let dt = time - self.time();
-        ViscoelasticContact::step(self, dt, load)
+        self.next(None, time, dt, &[load])
     }
 
     fn step(&mut self, dt: f64, load: Load) -> Result<StepReport> {

@@ -58,6 +58,7 @@ pub use samples::Sample;
 use std::fmt::Debug;
 use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 use crate::contact::StepReport;
 use crate::error::{Error, Result};
@@ -161,6 +162,12 @@ pub trait Contact: Clone + Debug + Send + Sync + 'static {
     /// Of a contact of your own any [`Error`], a [`UserError`](crate::UserError) among them; else those
     /// of the `step` of the type.
     fn step_to(&mut self, time: f64, load: Load) -> Result<StepReport>;
+
+    /// [`Contact::step_to`], ended within where another thread sets `cancelled`.
+    #[doc(hidden)]
+    fn step_to_unless(&mut self, _cancelled: Option<&AtomicBool>, time: f64, load: Load) -> Result<StepReport> {
+        self.step_to(time, load)
+    }
 
     /// Time \[s\].
     fn time(&self) -> f64;

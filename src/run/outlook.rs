@@ -103,7 +103,7 @@ pub(super) fn excess(scene: &Scene, tried: &Computation, dt: f64) -> f64 {
     let of_turn = if is_turn { ERROR_FACTORS.at_turn * (clock.last_dt / dt).max(1.0) } else { 1.0 };
     let tilts = tried.trial.free.iter().any(Freedom::tilts);
     let Pressed { cells, reach, .. } = if tilts { tried.pressed(scene) } else { Pressed::default() };
-    let leave = cells < tried.state.held.current.contact_cells;
+    let leave = tried.state.held.region.images() * cells < tried.state.held.current.contact_cells;
     let lever = |Extent { low, high }: Extent| {
         let lever = |axis: usize| {
             let (length, width) = (scene.ground.grid.cells()[axis] as f64, (high[axis] - low[axis]) as f64);

@@ -52,11 +52,16 @@ impl Passage {
         self.seen.clear();
         self.points.clear();
         self.seen.push((now, first));
+        self.marks[1] = f64::NAN;
         for k in 1..=PARTS {
             let uneven = if k % (PARTS / 2) == 0 { 0.0 } else { UNEVEN * (k as f64 * GOLDEN).fract() };
             let time = if k == PARTS { end } else { now + (end - now) * (k as f64 - uneven) / PARTS as f64 };
             while let Some(other) = others.next_if(|other| *other < time) {
                 self.seen.push((other, load(other)?));
+            }
+            // parts of a step of a few digits of time are rounded to its ends, where the load may jump
+            if k < PARTS && !(now < time && time < end) {
+                continue;
             }
             others.next_if_eq(&time);
             let value = load(time)?;
@@ -65,7 +70,9 @@ impl Passage {
                 self.marks[1] = value;
             }
         }
-        [self.marks[0], self.marks[2]] = [first, self.seen[self.seen.len() - 1].1];
+        let last = self.seen[self.seen.len() - 1].1;
+        let middle = if self.marks[1].is_nan() { 0.5 * (first + last) } else { self.marks[1] };
+        self.marks = [first, middle, last];
         self.points.push(self.seen[0]);
         for three in self.seen.windows(3) {
             let [a, b, c] = [three[0], three[1], three[2]];

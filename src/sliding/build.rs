@@ -145,7 +145,7 @@ impl Builder {
         self.settings = self.settings.with_symmetry(false).with_window(false).with_frame(Frame::Bodies);
         memory::check("a contact in steady motion", self.sliding_memory()?.into())?;
         let motion = self.counter_motion;
-        let (scene, _, indenter, missed) = self.parts()?;
+        let (scene, _, indenter) = self.parts()?;
         let Scene { ground: Ground { grid, kernel, .. }, material, .. } = &scene;
         let periodic = kernel.periodic_axes();
         let mut ends = (0..2).filter(|&axis| !periodic[axis]);
@@ -169,6 +169,6 @@ impl Builder {
         let displacement = vec![0.0; grid.len()];
         held.current.solution.pressure.clone_from(&displacement);
         let (scene, view) = (Arc::new(scene), View::default());
-        Ok(SteadySliding { scene, missed, held, displacement, view, bodies, cancelled: None })
+        Ok(SteadySliding { scene, held, displacement, view, bodies, cancelled: None })
     }
 }

@@ -68,8 +68,6 @@ use operator::MovingBodies;
 #[derive(Debug, Clone)]
 pub struct SteadySliding {
     scene: Arc<Scene>,
-    /// What the grid misses of the waves of the shape.
-    missed: Missed,
     /// The state found last.
     held: Held,
     displacement: Vec<f64>,
@@ -295,7 +293,7 @@ impl SteadySliding {
         held.current.contact_cells = pressed.cells;
         held.sum_up();
         self.view.refresh(held);
-        let figures = Figures { modulus: limits.modulus, ..held.figures(ground, self.missed, &pressed) };
+        let figures = Figures { modulus: limits.modulus, ..held.figures(ground, &pressed) };
         (held.warnings(ground, pressed.reach, &figures) | limits.warnings(0.0, 0.0), figures)
     }
 

@@ -56,7 +56,7 @@ impl ViscoelasticContact {
         let settings = own.settings.with_tolerance(tolerance).with_window(false);
         let ground = Ground { settings, attraction: None, softening: 0.0, ..own.clone() };
         let indenter = Arc::clone(&self.computation.state.held.indenter);
-        ElasticContact::new(Arc::new(ground), compliance, indenter, self.missed)
+        ElasticContact::new(Arc::new(ground), compliance, indenter)
     }
 }
 

@@ -7,6 +7,8 @@
 #[cfg(feature = "checkpoint")]
 use std::path::Path;
 
+use std::sync::atomic::AtomicBool;
+
 use crate::contact::StepReport;
 use crate::error::Result;
 use crate::load::{Load, LoadHistory};
@@ -116,7 +118,7 @@ impl Judge<StatesContact> for OnLevels {
         to.copy_from(from);
     }
 
-    fn take(contact: &mut StatesContact, time: f64, load: Load) -> Result<StepReport> {
+    fn take(contact: &mut StatesContact, time: f64, load: Load, _: Option<&AtomicBool>) -> Result<StepReport> {
         contact.advance(time, time - contact.time(), load, None)
     }
 

@@ -143,14 +143,20 @@ impl GradedRun {
 
     /// The same in steps twice as long, except where they end at corners of the load.
     fn by_longer_steps(&self, history: &dyn LoadHistory, at: (f64, bool)) -> Result<StateAt> {
-        let mut corner = history.next_breakpoint(self.origin.time());
+        let mut corner = self.next_corner(history, self.origin.time());
         let is_kept = |(k, end): &(usize, f64)| {
             let is_corner = corner.is_some_and(|corner| corner <= *end);
-            corner = if is_corner { history.next_breakpoint(*end) } else { corner };
+            corner = if is_corner { self.next_corner(history, *end) } else { corner };
             is_corner || k % 2 == 1
         };
         let kept = self.ends(at.0).into_iter().enumerate().filter(is_kept).map(|(_, end)| end);
         self.by_steps(history, &kept.collect::<Vec<_>>(), at)
+    }
+
+    /// The first corner of a load after a time, along the surface as well.
+    fn next_corner(&self, history: &dyn LoadHistory, after: f64) -> Option<f64> {
+        let along = self.origin.lateral_history().iter().filter_map(|along| along.next_breakpoint(after));
+        along.chain(history.next_breakpoint(after)).reduce(f64::min)
     }
 
     /// The contact at a time, by steps with these ends.
@@ -159,7 +165,8 @@ impl GradedRun {
         let start = contact.time();
         let seen = self.forces.partition_point(|(end, _)| *end < time || after && *end == time);
         let mut force = seen.checked_sub(1).map_or(0.0, |k| self.forces[k].1);
-        let mut corner = history.next_breakpoint(start);
+        let mut corner = self.next_corner(history, start);
+        let along = self.origin.lateral_history();
         let jump = |contact: &mut StatesContact, time: f64| {
             match contact.step_to(time, 0.0, history.checked_at(time, false)?) {
                 // the run stays as it was
@@ -178,13 +185,14 @@ impl GradedRun {
             let before = history.checked_before(end, false)?;
             contact.step_to(end, end - now, before)?;
             force = force.max(contact.force());
-            if (end < time || after) && history.checked_at(end, false)? != before {
+            let jumps_along = || along.iter().any(|along| along.at(end) != along.before(end));
+            if (end < time || after) && (history.checked_at(end, false)? != before || jumps_along()) {
                 jump(&mut contact, end)?;
                 force = force.max(contact.force());
             }
             while let Some(next) = corner.filter(|corner| *corner <= end) {
                 contact.levels.reset_differences();
-                corner = history.next_breakpoint(next);
+                corner = self.next_corner(history, next);
             }
         }
         Ok(StateAt { contact, force, by_force: self.by_force })

@@ -18,6 +18,7 @@ use crate::states::control::OnLevels;
 /// of both, in depth and force and in what the surfaces can ever add to them.
 impl Contact for StatesContact {
     fn step_to(&mut self, time: f64, load: Load) -> Result<StepReport> {
+        self.saved_run = None;
         StatesContact::step_to(self, time, time - self.time(), load)
     }
 

@@ -17,6 +17,7 @@ impl StatesContact {
             return Err(of_other_contact());
         }
         self.copy_from(clone);
+        self.saved_run = None;
         Ok(())
     }
 

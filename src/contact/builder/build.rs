@@ -39,11 +39,11 @@ impl Builder {
     /// ([`Error::NotCovered`](crate::Error::NotCovered)).
     pub fn build(mut self) -> Result<ViscoelasticContact> {
         let Some(group) = &self.ranks else {
-            let (scene, history, indenter, missed) = self.parts()?;
+            let (scene, history, indenter) = self.parts()?;
             let folded = if self.settings.symmetry { indenter.even_axes(&self.grid) } else { [false; 2] };
             let region = scene.ground.first_region(folded, &indenter, windowed(&scene, &history));
             scene.check_memory(&history, &region, 0)?;
-            return Ok(assemble(scene, &history, Arc::new(indenter), region, missed));
+            return Ok(assemble(scene, &history, indenter, region));
         };
         let rows = self.agreed_rows(group)?;
         let gaps = std::mem::take(&mut self.gaps);
@@ -51,23 +51,21 @@ impl Builder {
             let (scene, history) = rows.agree(self.scene(1))?;
             let (gap, even, region) = self.shared_gap(&gaps, &rows)?;
             rows.agree(scene.check_memory(&history, &region, 0))?;
-            let indenter = gap.on(&region, &self.grid, even);
+            let indenter = gap.on(&region, &self.grid, even).missing(self.missed(&scene));
             drop(gaps);
-            let missed = self.missed(&scene);
-            Ok(assemble(scene, &history, Arc::new(indenter), region, missed))
+            Ok(assemble(scene, &history, indenter, region))
         })
     }
 
-    /// The constants of a contact in one process, its history, its indenter, and what the grid misses of the waves of
-    /// its shapes.
-    pub(crate) fn parts(&mut self) -> Result<(Scene, History, Indenter, Missed)> {
+    /// The constants of a contact in one process, its history, and its indenter.
+    pub(crate) fn parts(&mut self) -> Result<(Scene, History, Indenter)> {
         self.validate()?;
         let gaps: Vec<_> = std::mem::take(&mut self.gaps).into_iter().map(|(_, gap)| gap).collect::<Result<_>>()?;
         let bodies = gaps.len();
         let indenter = Indenter::new(Gap::new(gaps, &self.grid)?, bodies);
         let (scene, history) = self.scene(bodies)?;
-        let missed = self.missed(&scene);
-        Ok((scene, history, indenter, missed))
+        let indenter = indenter.missing(self.missed(&scene));
+        Ok((scene, history, indenter))
     }
 
     /// What the grid misses of the waves of the shapes.
@@ -203,16 +201,10 @@ fn local_gap<'a>(gaps: &'a [LocalGap], rows: &Rows) -> Result<&'a [f64]> {
 }
 
 /// The contact of a scene; nothing here can fail. A call of all ranks that share out the region.
-fn assemble(
-    scene: Scene,
-    history: &History,
-    indenter: Arc<Indenter>,
-    region: Region,
-    missed: Missed,
-) -> ViscoelasticContact {
+fn assemble(scene: Scene, history: &History, indenter: Indenter, region: Region) -> ViscoelasticContact {
     let attracts = scene.ground.attraction.is_some();
-    let computation = Computation::new(&scene, State::at_rest(indenter, region, history, attracts));
-    ViscoelasticContact::new(scene, computation, missed)
+    let computation = Computation::new(&scene, State::at_rest(Arc::new(indenter), region, history, attracts));
+    ViscoelasticContact::new(scene, computation)
 }
 
 /// The history of bodies of `material` in a frame, on no cells yet.

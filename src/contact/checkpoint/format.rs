@@ -19,7 +19,7 @@ const MAGIC: &[u8; 8] = b"VISCOCHK";
 /// Raised with every change of what is saved: the `State`s of contacts and of friction, `Levels`, the `Progress` and
 /// control of a run, and all that these hold; and the [fingerprint](super::fingerprint). What is new there is also
 /// checked by the `fits` or `check` of its type, which the compiler does not ask for.
-const VERSION: u32 = 24;
+const VERSION: u32 = 25;
 /// Where the checksum is, and where what it is of begins.
 const CHECKSUM: u64 = 12;
 const CONTENTS: u64 = 16;

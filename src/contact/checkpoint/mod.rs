@@ -21,7 +21,7 @@ use crate::contact::{Computation, State, ViscoelasticContact};
 use crate::equilibrium::{Held, Indenter, Region};
 use crate::error::{Error, Refusal, Result};
 use crate::file::in_memory;
-use crate::geometry::Gap;
+use crate::geometry::{Gap, Missed};
 use crate::hereditary::{Role, interleaved, runs};
 use crate::parallel::Rows;
 use check::check_fields;
@@ -48,8 +48,8 @@ pub(crate) type Check<'a, P> = &'a dyn Fn(Option<&P>) -> Result<(), Refusal>;
 struct Saved<'a, P: Attached> {
     /// On the region of all ranks, without fields.
     state: State,
-    /// The gap, where it is no longer the one built.
-    gap: Option<Cow<'a, Gap>>,
+    /// The gap, where it is no longer the one built, and what the grid misses of its waves.
+    gap: Option<(Cow<'a, Gap>, Missed)>,
     attached: Option<Cow<'a, P>>,
 }
 
@@ -72,7 +72,7 @@ impl ViscoelasticContact {
         let all = if region.is_shared() { Region::whole(&region.whole, region.folded()) } else { region.clone() };
         let saved = Saved {
             state: state.map(&all, &mut |_| Vec::new()),
-            gap: (!Arc::ptr_eq(indenter, &self.built)).then(|| Cow::Borrowed(indenter.gap())),
+            gap: (!Arc::ptr_eq(indenter, &self.built)).then(|| (Cow::Borrowed(indenter.gap()), indenter.missed)),
             attached: attached.map(Cow::Borrowed),
         };
         let scene = self.parts(P::KIND);
@@ -144,10 +144,11 @@ impl ViscoelasticContact {
         check: Check<'_, P>,
     ) -> Result<(State, Option<P>), Refusal> {
         let Saved { mut state, gap, attached }: Saved<'_, P> = file.contents(scene)?;
-        self.check(&state, gap.as_deref())?;
+        self.check(&state, gap.as_ref().map(|(gap, _)| &**gap))?;
         check(attached.as_deref())?;
-        let gap = gap.map(|gap| Arc::new(Indenter::new(gap.into_owned(), self.scene.ground.bodies)));
-        state.held.indenter = gap.unwrap_or_else(|| Arc::clone(&self.built));
+        let bodies = self.scene.ground.bodies;
+        let indenter = gap.map(|(gap, missed)| Arc::new(Indenter::new(gap.into_owned(), bodies).missing(missed)));
+        state.held.indenter = indenter.unwrap_or_else(|| Arc::clone(&self.built));
         let region = state.held.region.clone().shared_like(&self.computation.state.held.region);
         let (rows, cells, mut sound) = (region.rows(), region.len(), Ok(()));
         let state = state.map(&region, &mut |field| match field.role {

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use crate::contact::{State, Step, StepReport, ViscoelasticContact};
-use crate::equilibrium::{Held, Indenter};
+use crate::equilibrium::Held;
 use crate::error::{Result, count_within, coverage};
-use crate::geometry::Gap;
+use crate::geometry::Geometry;
 use crate::load::Load;
 use crate::motion::Travel;
 
@@ -43,12 +43,14 @@ impl ViscoelasticContact {
         let only = "1: several are moved by ViscoelasticContact::set_geometries before a step";
         count_within("rigid bodies of a step along a path", self.fields().bodies(), self.fields().bodies() == 1, only)?;
         let loads = [load];
-        let requested = self.plan_next_step(dt, &loads)?;
+        let requested = self.plan_next_step(self.time() + dt, dt, &loads)?;
         let position = travel.position(self.time() + dt)?;
         let shape = travel.shape_at(self.time() + dt)?;
-        let gap = Gap::new(vec![travel.gap(&shape, self.grid())?], self.grid())?;
+        let waves: Vec<_> = shape.waves().into_iter().chain(travel.waves_of_track()).collect();
+        let indenter = self.indenter(vec![travel.gap(&shape, self.grid())?], &waves)?;
         let before = self.load_and_motion();
-        let step = self.take(Step { indenter: Arc::new(Indenter::new(gap, 1)), ..requested })?;
+        let step = self.take(Step { indenter: Arc::new(indenter), ..requested })?;
+        self.saved_run = None;
         let lateral_force = self.fields().slope_force(&shape);
         let power = if dt > 0.0 { self.work_along(before) / dt } else { 0.0 };
         Ok(TravelReport { step, position, lateral_force, power })

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use crate::contact::{StepReport, ViscoelasticContact};
 use crate::equilibrium::{Indenter, Warnings};
 use crate::error::{Result, coverage, exact_length};
-use crate::geometry::{Gap, Geometry, Missed, evaluate};
+use crate::geometry::{Gap, Geometry, Missed, evaluate, Waves};
 use crate::load::Load;
 use wake::Wake;
 
@@ -26,15 +26,15 @@ impl ViscoelasticContact {
             .iter()
             .map(|geometry| evaluate(*geometry, &self.scene.ground.grid))
             .collect::<Result<Vec<_>>>()?;
-        let indenter = Indenter::new(Gap::new(gaps, &self.scene.ground.grid)?, self.scene.ground.bodies);
+        let waves: Vec<_> = geometries.iter().flat_map(|geometry| geometry.waves()).collect();
+        let indenter = self.indenter(gaps, &waves)?;
         let region = &self.computation.state.held.region;
         let still_folded = indenter.keeps_folded(region.folded(), &self.scene.ground.grid);
         if still_folded != region.folded() {
             // the next step unfolds the fields
             self.computation.check_memory_for(&self.scene, &region.unfolded(still_folded))?;
         }
-        let waves: Vec<_> = geometries.iter().flat_map(|geometry| geometry.waves()).collect();
-        self.missed = Missed::of(&waves, &self.scene.ground.grid, self.scene.ground.kernel.periodic_axes());
+        self.saved_run = None; // a run that a file held does not know of it
         let state = &mut self.computation.state;
         let before = std::mem::replace(&mut state.held.indenter, Arc::new(indenter));
         state.start.replaced.get_or_insert(before);
@@ -42,6 +42,13 @@ impl ViscoelasticContact {
         state.held.extrapolation.interrupt();
         state.history.reset_differences();
         Ok(())
+    }
+
+    /// An indenter of these gaps, of shapes with such waves.
+    pub(in crate::contact) fn indenter(&self, gaps: Vec<Vec<f64>>, waves: &[Waves]) -> Result<Indenter> {
+        let (ground, bodies) = (&self.scene.ground, gaps.len());
+        let missed = Missed::of(waves, &ground.grid, ground.kernel.periodic_axes());
+        Ok(Indenter::new(Gap::new(gaps, &ground.grid)?, bodies).missing(missed))
     }
 
     /// Takes a step in which the indenter and the grid move over the bodies by whole cells along x1 and x2: the
@@ -77,9 +84,10 @@ impl ViscoelasticContact {
     /// As [`ViscoelasticContact::step`], or if the grid is fixed to the bodies.
     pub fn step_over(&mut self, cells: [isize; 2], dt: f64, loads: impl AsRef<[Load]>) -> Result<StepReport> {
         self.covers(coverage::STEP_OVER_BODIES)?;
-        let mut step = self.plan_next_step(dt, loads.as_ref())?;
+        let mut step = self.plan_next_step(self.time() + dt, dt, loads.as_ref())?;
         step.interval.stride = cells;
         let mut report = self.take(step)?;
+        self.saved_run = None;
         if let Some(reach) = self.fields().extent_of_contact() {
             let (scene, computation) = (&*self.scene, &self.computation);
             report.figures.wake = Wake { scene, computation, reach, stride: cells }.missing();

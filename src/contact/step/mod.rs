@@ -95,7 +95,7 @@ impl ViscoelasticContact {
     /// contact is then unchanged, except that [`ViscoelasticContact::within_step`] has lost the start of the last
     /// step.
     pub fn step(&mut self, dt: f64, loads: impl AsRef<[Load]>) -> Result<StepReport> {
-        self.next(None, dt, loads.as_ref())
+        self.next(None, self.time() + dt, dt, loads.as_ref())
     }
 
     /// [`ViscoelasticContact::step`], ended within an iteration where another thread sets `cancelled`.
@@ -103,14 +103,21 @@ impl ViscoelasticContact {
     /// # Errors
     /// As [`ViscoelasticContact::step`], and [`Error::Cancelled`].
     pub fn step_unless(&mut self, cancelled: &AtomicBool, dt: f64, loads: impl AsRef<[Load]>) -> Result<StepReport> {
-        self.next(Some(cancelled), dt, loads.as_ref())
+        self.next(Some(cancelled), self.time() + dt, dt, loads.as_ref())
     }
 
-    fn next(&mut self, cancelled: Option<&AtomicBool>, dt: f64, loads: &[Load]) -> Result<StepReport> {
+    /// Takes a step of length `dt` to a time.
+    pub(crate) fn next(
+        &mut self,
+        cancelled: Option<&AtomicBool>,
+        time: f64,
+        dt: f64,
+        loads: &[Load],
+    ) -> Result<StepReport> {
         let rows = self.computation.state.held.region.rows();
         rows.or_loss(|| {
             // here, so that all ranks agree on an error before they begin; steps of runs come by `compute` alone
-            let requested = self.plan_next_step(dt, loads);
+            let requested = self.plan_next_step(time, dt, loads);
             let requested =
                 requested.and_then(|step| validate_loads(&self.scene.ground, step.request()).map(|()| step));
             let step = rows.agree(requested)?;
@@ -120,10 +127,10 @@ impl ViscoelasticContact {
         })
     }
 
-    /// The next step of length `dt`, to the tolerance of the settings.
-    pub(crate) fn plan_next_step<'a>(&self, dt: f64, loads: &'a [Load]) -> Result<Step<'a>> {
+    /// The next step of length `dt`, to a time, to the tolerance of the settings.
+    pub(crate) fn plan_next_step<'a>(&self, time: f64, dt: f64, loads: &'a [Load]) -> Result<Step<'a>> {
         non_negative("time step", dt)?;
-        self.request(self.time() + dt, dt, loads, self.settings().tolerance)
+        self.request(time, dt, loads, self.settings().tolerance)
     }
 
     /// A step of `length` to the time `time`, without motion along the surface.
@@ -235,7 +242,7 @@ impl ViscoelasticContact {
             cells_in_zone: coarse_zone(scene, compliance),
             beyond_edge: self.computation.attracted.as_ref().and_then(|own| own.beyond_edge(scene)),
             modulus: scene.limits.modulus,
-            ..state.held.figures(&scene.ground, self.missed, &pressed)
+            ..state.held.figures(&scene.ground, &pressed)
         };
         StepReport {
             time: clock.time,

@@ -9,7 +9,7 @@ use self::slope::Slopes;
 use crate::Grid;
 use crate::equilibrium::Hull;
 use crate::equilibrium::window::region::Region;
-use crate::geometry::Gap;
+use crate::geometry::{Gap, Missed};
 use crate::solver::{HaloRows, RigidMotion};
 
 /// The indenters of a contact where they are. Replaced whole when one of them moves or changes.
@@ -26,6 +26,8 @@ pub(crate) struct Indenter {
     beyond: HaloRows,
     /// Whether the gap covers only the local rows of a rank.
     is_local: bool,
+    /// What the grid misses of the waves of the shapes.
+    pub(crate) missed: Missed,
 }
 
 impl Indenter {
@@ -38,7 +40,14 @@ impl Indenter {
             slopes: OnceLock::new(),
             beyond: HaloRows::default(),
             is_local: false,
+            missed: Missed::default(),
         }
+    }
+
+    /// The same of shapes with waves of which the grid misses something.
+    pub(crate) fn missing(mut self, missed: Missed) -> Indenter {
+        self.missed = missed;
+        self
     }
 
     /// The indenter of a rank: the gap of a single body on the computed cells of the local rows, which are `region`;

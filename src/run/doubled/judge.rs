@@ -4,6 +4,8 @@ use std::fmt::Debug;
 #[cfg(feature = "checkpoint")]
 use std::path::Path;
 
+use std::sync::atomic::AtomicBool;
+
 use crate::contact::StepReport;
 use crate::error::{Error, Result};
 use crate::load::{Load, LoadHistory};
@@ -49,8 +51,8 @@ pub(crate) trait Judge<C: Contact>: Default + Clone + Debug + Send + Sync + 'sta
     }
 
     /// A step of a trial.
-    fn take(contact: &mut C, time: f64, load: Load) -> Result<StepReport> {
-        contact.step_to(time, load)
+    fn take(contact: &mut C, time: f64, load: Load, cancelled: Option<&AtomicBool>) -> Result<StepReport> {
+        contact.step_to_unless(cancelled, time, load)
     }
 
     /// Sees the state at the end of an accepted step.
@@ -173,8 +175,9 @@ impl<J> Record<J> {
                 loads.extend(J::size(contact, load).ok().map(|load| (time, load)));
             }
         }
-        (self.bends, self.by_force) = (Some(bends(&loads)), !others);
-        self.greatest_load = loads.iter().fold(0.0, |most, load| load.1.max(most));
+        (self.bends, self.by_force) = (Some(bends(&loads)), self.by_force && !others);
+        // a run that goes on has had others
+        self.greatest_load = loads.iter().fold(self.greatest_load, |most, load| load.1.max(most));
         // of forces or of depths
         self.least_load = if forces != others { f64::EPSILON * self.greatest_load } else { 0.0 };
         self.bends_along.clear();
@@ -183,7 +186,7 @@ impl<J> Record<J> {
             let pairs = looks.map(|look| look.map(|(time, [before, at])| [(time, before.main()), (time, at.main())]));
             let seen = pairs.collect::<Result<Vec<_>>>().map_err(Error::along)?.concat();
             self.bends_along.extend(bends(&seen));
-            *greatest = seen.iter().fold(0.0, |most, (_, load)| load.abs().max(most));
+            *greatest = seen.iter().fold(*greatest, |most, (_, load)| load.abs().max(most));
         }
         self.bends_along.sort_by(f64::total_cmp);
         J::look(self, &loads);

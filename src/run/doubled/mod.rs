@@ -14,10 +14,10 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::contact::{Estimated, Figures, StepReport, Warnings};
-use crate::error::{Error, Result, StepError, within};
+use crate::error::{Error, ErrorKind, Result, StepError, within};
 use crate::load::{Load, LoadHistory};
 use crate::run::Contact;
-use crate::run::control::{Control, Course};
+use crate::run::control::{Control, Course, MOST_UNSOLVED};
 use crate::run::error_budget::ErrorBudget;
 use crate::run::histories::Histories;
 use crate::run::passage::{AT_START, Passage, Span};
@@ -34,6 +34,8 @@ const LATE: f64 = 64.0;
 const MIN_GROWTH: f64 = 0.1;
 /// A step may have so many times the error that it aims at.
 const ALLOWED: f64 = 3.0;
+/// The next attempt, over one that the solver did not converge for.
+const SHORTER_UNSOLVED: f64 = 0.2;
 /// Maximum deviation of the load from a parabola within a step, over the maximum load.
 const BEND: f64 = 0.03;
 
@@ -47,6 +49,8 @@ pub(crate) struct Doubled<C, J> {
     tries: Tries<C>,
     /// The load within the step.
     passage: Passage,
+    /// Convolutions, and preconditioner applications, of the tries of the step.
+    work: [usize; 2],
     /// The first time within the step at which what acts along the surface turns: what slips there turns back, and the
     /// contact remembers where it turned.
     turn: Option<f64>,
@@ -56,7 +60,7 @@ impl<C: Contact, J: Judge<C>> Doubled<C, J> {
     fn new(contact: &C, record: Record<J>) -> Doubled<C, J> {
         let (before, whole) = (contact.clone(), J::trial(contact));
         let tries = Tries { halves: whole.clone(), middle: whole.clone(), whole };
-        Doubled { record, before, halved: false, tries, passage: Passage::default(), turn: None }
+        Doubled { record, before, halved: false, tries, passage: Passage::default(), work: [0; 2], turn: None }
     }
 
     /// The history that the steps follow.
@@ -67,7 +71,7 @@ impl<C: Contact, J: Judge<C>> Doubled<C, J> {
     fn take_step(&mut self, contact: &mut C, course: &Course<'_>) -> Result<StepReport> {
         let rounded = self.rounded(contact, course.histories.first());
         match course.given {
-            Some((time, &[load, ..])) => contact.step_to(time, rounded.round(load)),
+            Some((time, &[load, ..])) => contact.step_to_unless(course.cancelled, time, rounded.round(load)),
             _ => self.step(contact, &rounded, course),
         }
     }
@@ -92,6 +96,8 @@ impl<C: Contact, J: Judge<C>> Doubled<C, J> {
         let mut length = if is_first { FIRST_STEP * (stop - now) } else { self.record.next }.max(shortest);
         let longest = J::longest_growth(contact, load_at(stop)?);
         let first = J::size(contact, history.checked_at(now, attracts)?)?;
+        let mut failures = 0;
+        self.work = [0; 2];
         loop {
             if is_late {
                 length = length.max(shortest);
@@ -113,6 +119,11 @@ impl<C: Contact, J: Judge<C>> Doubled<C, J> {
                 Err(error) if contact.is_beyond(&error) && end - now > 0.1 * tolerance * (end - self.record.start) => {
                     self.record.rejected += 1;
                     length = 0.5 * (end - now);
+                    continue;
+                }
+                Err(error) if error.kind() == ErrorKind::Convergence && failures < MOST_UNSOLVED => {
+                    (failures, self.record.rejected) = (failures + 1, self.record.rejected + 1);
+                    length = SHORTER_UNSOLVED * (end - now);
                     continue;
                 }
                 report => report?,
@@ -137,7 +148,16 @@ impl<C: Contact, J: Judge<C>> Doubled<C, J> {
                 self.record.corner = corner;
                 J::copy(contact, &self.tries.halves);
                 J::accept(&self.record, contact);
-                return Ok(StepReport { dt: end - now, time_error: Some(error), ..report });
+                // of all tries
+                let [convolutions, preconditioner_applications] = self.work;
+                let dt = end - now;
+                return Ok(StepReport {
+                    dt,
+                    time_error: Some(error),
+                    convolutions,
+                    preconditioner_applications,
+                    ..report
+                });
             }
             self.record.rejected += 1;
             length = growth.min(0.5) * (end - now);
@@ -197,10 +217,13 @@ impl<C: Contact, J: Judge<C>> Doubled<C, J> {
         Span { now, end }: Span,
         cancelled: Option<&AtomicBool>,
     ) -> Result<StepReport> {
-        let Tries { whole, halves, middle } = &mut self.tries;
-        let to = |contact: &mut C, time: f64| {
+        let Doubled { tries: Tries { whole, halves, middle }, work, .. } = self;
+        let mut to = |contact: &mut C, time: f64| {
             unless_cancelled(cancelled)?;
-            J::take(contact, time, history.checked_before(time, contact.attracts())?)
+            let mut report = J::take(contact, time, history.checked_before(time, contact.attracts())?, cancelled)?;
+            work[0] += std::mem::take(&mut report.convolutions);
+            work[1] += std::mem::take(&mut report.preconditioner_applications);
+            Ok(report)
         };
         J::copy(whole, contact);
         to(whole, end)?;
@@ -223,7 +246,14 @@ pub(crate) fn lead<C: Contact, J: Judge<C>>(
 ) -> (Progress, Box<dyn Control<C>>) {
     let time = contact.time();
     let (progress, record) = match saved.filter(|(progress, _)| progress.continues(time, stepping, until)) {
-        Some(saved) => saved.clone(),
+        Some((progress, record)) => {
+            let mut record = record.clone();
+            if until > record.until {
+                // what lies beyond the end that it had is looked at
+                (record.until, record.bends) = (until, None);
+            }
+            (progress.clone(), record)
+        }
         None => {
             let (_, tolerance) = stepping.lengths();
             let record = Record { tolerance, start: time, until, by_force: true, ..Record::default() };

@@ -33,11 +33,15 @@ impl AttractedStep<'_> {
     pub(super) fn free_motion(&self, state: &Equilibrium) -> RigidMotion {
         let (RigidMotion { approach, tilt }, step) = (state.motions[0], self.step);
         let prescribed = step.request().prescribed(0);
-        let free = |is_free: bool, value: f64| if is_free { value } else { 0.0 };
-        RigidMotion {
-            approach: free(self.wanted.translation, approach - step.indenter.gap().datum - prescribed.approach),
-            tilt: [0, 1].map(|axis| free(self.wanted.tilt[axis], tilt[axis] - prescribed.tilt[axis])),
-        }
+        let free = |axis: usize| if self.wanted.tilt[axis] { tilt[axis] - prescribed.tilt[axis] } else { 0.0 };
+        let tilt = [free(0), free(1)];
+        let approach = if self.wanted.translation {
+            approach - step.indenter.gap().datum - prescribed.approach
+        } else {
+            // about the load point, which stays where it is
+            -(tilt[0] * self.wanted.point[0] + tilt[1] * self.wanted.point[1])
+        };
+        RigidMotion { approach, tilt }
     }
 
     /// The energy of a state with the potential K (z − s), in the gap before any traction: the wall holds its cells while this gap changes by what a step begins with.
