@@ -89,11 +89,7 @@ impl ElasticContact {
         ElasticBuilder::new(grid)
     }
 
-    pub(crate) fn new(
-        ground: Arc<Ground>,
-        compliance: f64,
-        indenter: Arc<Indenter>,
-    ) -> Result<ElasticContact> {
+    pub(crate) fn new(ground: Arc<Ground>, compliance: f64, indenter: Arc<Indenter>) -> Result<ElasticContact> {
         let folded = if ground.settings.symmetry { indenter.even_axes(&ground.grid) } else { [false; 2] };
         let region = ground.first_region(folded, &indenter, windowed(&ground));
         ground.check_cells(&region)?;

@@ -40,9 +40,12 @@ impl Fields<'_> {
             if rise.is_finite() || ahead.is_nan() || behind.is_nan() { rise } else { 0.0 }
         };
         let gap = self.held.indenter.gap();
+        // the attraction pulls on slopes, too
+        let attraction = self.attraction_on_grid();
         let of_row = |i: usize, row: &[f64]| {
             let (mut own, x1) = ([0.0; 2], self.grid().coordinate(0, i));
-            for (j, &p) in row.iter().enumerate().filter(|(j, p)| **p > 0.0 && gap.owner(i * n2 + j) == 0) {
+            let net = |(j, p): (usize, &f64)| (j, p - attraction.as_ref().map_or(0.0, |s| s[i * n2 + j]));
+            for (j, p) in row.iter().enumerate().map(net).filter(|(j, p)| *p != 0.0 && gap.owner(i * n2 + j) == 0) {
                 let x2 = self.grid().coordinate(1, j);
                 own[0] += p * (rise(shape.initial_gap(x1 + half1, x2), shape.initial_gap(x1 - half1, x2)));
                 own[1] += p * (rise(shape.initial_gap(x1, x2 + half2), shape.initial_gap(x1, x2 - half2)));

@@ -274,6 +274,16 @@ impl<'a> Fields<'a> {
         Ok(())
     }
 
+    /// The attraction on the whole grid, which ranks do not share out; `None` without.
+    pub(crate) fn attraction_on_grid(&self) -> Option<Vec<f64>> {
+        let Held { region, current, .. } = self.held;
+        (!current.solution.attraction.is_empty()).then(|| {
+            let mut out = vec![0.0; region.shown_len()];
+            region.show(&current.solution.attraction, &mut out);
+            out
+        })
+    }
+
     /// Refuses what this contact does not cover.
     pub(crate) fn covers(&self, case: coverage::Case) -> Result<()> {
         case.refuse_if(|special| match special {

@@ -28,6 +28,7 @@ mod saved;
 mod shear_history;
 mod snapshot;
 mod state;
+mod work;
 
 pub use contact::FrictionContact;
 pub use limit::{Coulomb, FrictionLimit, Lesser, Tresca};

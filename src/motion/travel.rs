@@ -2,7 +2,7 @@ use std::sync::Arc;
 
 use crate::Grid;
 use crate::error::{Error, Result, finite};
-use crate::geometry::{Geometry, Shifted, added, evaluate, Waves};
+use crate::geometry::{Geometry, Shifted, Waves, added, evaluate};
 use crate::motion::Path;
 
 /// A shape that moves along a path, optionally over a fixed track.

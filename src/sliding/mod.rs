@@ -34,7 +34,6 @@ use crate::equilibrium::pressed::Pressed;
 use crate::equilibrium::{Held, Request, Trial};
 use crate::error::{Error, Refusal, Result, StepError, finite};
 use crate::fields::{About, Fields, Surface, View};
-use crate::geometry::Missed;
 use crate::load::Load;
 use crate::rounded::rounded;
 use crate::solver::{Freedom, RigidMotion};

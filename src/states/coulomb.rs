@@ -1,9 +1,11 @@
 //! Coulomb's law of a contact, and what its loads ask of the levels.
 
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 use crate::error::{Result, within};
 use crate::load::{Load, LoadHistory, Tilt};
+use crate::states::curve::{ElasticState, ElasticStates};
 use crate::states::levels::Demand;
 
 /// Coulomb's law of a contact.
@@ -45,5 +47,20 @@ impl CoulombOnStates {
                 Demand::Depth { depth: drive / of_displacement, give }
             }
         })
+    }
+}
+
+impl ElasticStates {
+    /// By how much a body that is free to tilt turns as it is pressed: how far this moves the edge of its contact, over
+    /// the depth, at most.
+    pub(super) fn turn(&self) -> f64 {
+        let of_state = |state: &ElasticState| {
+            let turned = [0, 1].map(|axis| match self.tilt[axis] {
+                Tilt::Free { .. } => (state.tilt[axis] - self.rest.tilt[axis]).abs(),
+                Tilt::Fixed(_) => 0.0,
+            });
+            turned[0].max(turned[1]) * (state.area / PI).sqrt() / self.depth_of(state)
+        };
+        self.states.iter().filter(|state| state.level > 0.0).map(of_state).fold(0.0, f64::max)
     }
 }

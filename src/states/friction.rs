@@ -23,6 +23,9 @@ fn other_kernel() -> Error {
     Refusal::unsupported("states_other_kernel", what, remedy).into()
 }
 
+/// A body turns if a turn moves the edge of its contact by more than this part of its depth.
+const MOST_TURNED: f64 = 1e-3;
+
 /// The error of a load along the surface without friction.
 fn no_friction() -> Error {
     let what = "the contact has no friction that could carry a load along its surface";
@@ -99,9 +102,15 @@ impl StatesContact {
         self.with_coulomb(coefficient, ratio)
     }
 
+    /// With Coulomb's law: the states along the surface are those of a shift, which all that sticks follows alike.
     fn with_coulomb(mut self, coefficient: f64, ratio: f64) -> Result<StatesContact> {
         let allowed = "above 0, at most 1e6";
         within("coefficient of friction", coefficient, coefficient > 0.0 && coefficient <= 1e6, allowed)?;
+        if self.states.turn() > MOST_TURNED {
+            let what = "friction on elastic states whose body turns as it is pressed, since a shift along the surface does not";
+            let remedy = ": compute it in space (FrictionContact), or sweep the states with fixed tilts";
+            return Err(Refusal::unsupported("friction_turning", what, remedy).into());
+        }
         self = self.with_interpolant(Interpolant::Linear);
         self.levels.with_shear(&self.states);
         Arc::make_mut(&mut self.scene).friction = Some(CoulombOnStates { coefficient, ratio, history: None });

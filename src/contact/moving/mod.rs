@@ -8,7 +8,7 @@ use std::sync::Arc;
 use crate::contact::{StepReport, ViscoelasticContact};
 use crate::equilibrium::{Indenter, Warnings};
 use crate::error::{Result, coverage, exact_length};
-use crate::geometry::{Gap, Geometry, Missed, evaluate, Waves};
+use crate::geometry::{Gap, Geometry, Missed, Waves, evaluate};
 use crate::load::Load;
 use wake::Wake;
 

@@ -1,5 +1,7 @@
 //! Where the work of a load goes.
 
+use std::sync::Arc;
+
 use crate::contact::stepper::ViscoelasticContact;
 use crate::contact::{PassReport, State, StepReport, Warnings};
 use crate::error::{Result, count_within, coverage, within};
@@ -190,6 +192,12 @@ impl EnergyBalance {
                 return Ok(self.energies);
             }
         }
+        // another indenter since then: only the step itself knows both
+        let is_same = |before: &&ViscoelasticContact| {
+            let [one, other] = [before, contact].map(|at| &at.computation.state.held.indenter);
+            Arc::ptr_eq(one, other)
+        };
+        let before = before.filter(is_same);
         let left = if is_inexact { halvings.min(HALVINGS) } else { halvings } - 1;
         if in_halves.take_in_halves((before, contact), left).is_ok_and(|same_end| same_end) {
             *self = in_halves;
@@ -208,11 +216,12 @@ impl EnergyBalance {
         let stored = stored + self.attracted(contact)?;
         let lost = contact.passes().filter(|_| jumped).map_or(0.0, |passes| passes.released);
         let [pushed, moved] = contact.load_and_motion();
-        let [before, after] = if jumped { self.ends_of_jump(contact, &pushed) } else { [self.pushed, pushed] };
+        let [from, to] = [(self.pushed, self.moved), (pushed, moved)].map(|end| about_load_point(contact, end));
+        let [before, after] = if jumped { ends_of_jump(contact, from, to.0) } else { [from.0, to.0] };
         let work = match dt {
             _ if std::mem::take(&mut self.far_apart) => stored + dissipated + lost,
             0.0 => stored - self.energies.stored + lost,
-            _ => (0..3).map(|k| 0.5 * (before[k] + after[k]) * (moved[k] - self.moved[k])).sum(),
+            _ => (0..3).map(|k| 0.5 * (before[k] + after[k]) * (to.1[k] - from.1[k])).sum(),
         };
         let Energies { work: worked, viscous, lost: lost_before, .. } = self.energies;
         let (viscous, lost) = (viscous + dissipated, lost_before + lost);
@@ -266,23 +275,6 @@ impl EnergyBalance {
         self.take_in((None, part), dt, jumped, halvings)
     }
 
-    /// Force and moments at the beginning and at the end of the motion in a step with a jump, which is at its end:
-    /// what is released belongs to the load there. So a given motion is over before the jump, and what the load
-    /// leaves free moves under the load of the end.
-    fn ends_of_jump(&self, contact: &ViscoelasticContact, pushed: &[f64; 3]) -> [[f64; 3]; 2] {
-        let load = contact.fields().load();
-        let is_given = |k: usize| match (k, load) {
-            (0, load) => matches!(load, Load::Approach { .. }),
-            (k, load) => matches!(load.tilt()[k - 1], Tilt::Fixed(_)),
-        };
-        let end = [0, 1, 2].map(|k| if is_given(k) { self.pushed[k] } else { pushed[k] });
-        let held = match load {
-            Load::Spring { stiffness, drive, .. } => stiffness * (drive - self.moved[0]),
-            _ => end[0],
-        };
-        [[held, end[1], end[2]], end]
-    }
-
     /// Energy of the attraction \[J\], 0 for bodies far apart.
     fn attracted(&mut self, contact: &ViscoelasticContact) -> Result<f64> {
         let Some(attraction) = contact.fields().attraction() else { return Ok(0.0) };
@@ -290,4 +282,29 @@ impl EnergyBalance {
         let energies = self.gap.iter().filter(|gap| gap.is_finite()).map(|gap| attraction.energy(gap.max(0.0)));
         Ok(-contact.grid().cell_area() * energies.sum::<f64>())
     }
+}
+
+/// Force and moments, and approach and tilts, about the point about which a body is free to tilt.
+type AtLoadPoint = ([f64; 3], [f64; 3]);
+
+fn about_load_point(contact: &ViscoelasticContact, ([force, m1, m2], [approach, t1, t2]): AtLoadPoint) -> AtLoadPoint {
+    let [x1, x2] = contact.fields().load().tilt().map(|tilt| if let Tilt::Free { at } = tilt { at } else { 0.0 });
+    ([force, m1 - x1 * force, m2 - x2 * force], [approach + t1 * x1 + t2 * x2, t1, t2])
+}
+
+/// Force and moments at the beginning and at the end of the motion in a step with a jump, which is at its end: what is
+/// released belongs to the load there. So a given motion is over before the jump, and what the load leaves free moves
+/// under the load of the end.
+fn ends_of_jump(contact: &ViscoelasticContact, (before, moved): AtLoadPoint, after: [f64; 3]) -> [[f64; 3]; 2] {
+    let load = contact.fields().load();
+    let is_given = |k: usize| match (k, load) {
+        (0, load) => matches!(load, Load::Approach { .. }),
+        (k, load) => matches!(load.tilt()[k - 1], Tilt::Fixed(_)),
+    };
+    let end = [0, 1, 2].map(|k| if is_given(k) { before[k] } else { after[k] });
+    let held = match load {
+        Load::Spring { stiffness, drive, .. } => stiffness * (drive - moved[0]),
+        _ => end[0],
+    };
+    [[held, end[1], end[2]], end]
 }
