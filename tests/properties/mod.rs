@@ -7,3 +7,4 @@ mod metamorphic_time;
 mod periodic;
 mod ranks;
 mod related;
+mod sisters;
