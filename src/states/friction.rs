@@ -67,8 +67,8 @@ impl StatesContact {
     /// ```
     ///
     /// # Errors
-    /// If the coefficient is not above 0, or more than 10⁶; if bodies respond to tangential
-    /// loads in another way: [`StatesContact::with_estimated_friction`] takes them.
+    /// If the coefficient is not above 0, or more than 10⁶; if the body is free to tilt and turns as it is pressed; if
+    /// bodies respond to tangential loads in another way: [`StatesContact::with_estimated_friction`] takes them.
     pub fn with_friction(self, coefficient: f64) -> Result<StatesContact> {
         let (material, is_line) = (&self.scene.material, self.is_line()?);
         let has = |wanted: f64| material.poisson_ratios().all(|ratio| ratio == Some(wanted));
@@ -84,8 +84,8 @@ impl StatesContact {
     /// 0.9 f P; that of a rough surface by 1.7 % in the median of 12, at most 8 %.
     ///
     /// # Errors
-    /// If the coefficient is not above 0, or more than 10⁶; for layers and other kernels than
-    /// those of half-spaces, and for bodies whose Poisson's ratio changes with time. States of a table or a file, which
+    /// If the coefficient is not above 0, or more than 10⁶; if the body turns as it is pressed; for layers and other
+    /// kernels than those of half-spaces, and for bodies whose Poisson's ratio changes with time. States of a table or a file, which
     /// do not tell their kernel, are taken for those of half-spaces.
     pub fn with_estimated_friction(self, coefficient: f64) -> Result<StatesContact> {
         let (material, is_line) = (&self.scene.material, self.is_line()?);

@@ -173,7 +173,7 @@ fn checkpoints(t: &mut Table) {
     t.row(resume(&path), File, "…: not a checkpoint: the magic number is missing");
     pressed().save(&path).unwrap();
     let bytes = std::fs::read(&path).unwrap();
-    for (change, says) in [(8, "…: the checkpoint is of format 123, this version reads format…"), (bytes.len() - 3, "…: the checkpoint is damaged or truncated: its checksum is not that of…")] {
+    for (change, says) in [(8, "…: the checkpoint is of format 122, this version reads format…"), (bytes.len() - 3, "…: the checkpoint is damaged or truncated: its checksum is not that of…")] {
         let mut changed = bytes.clone();
         changed[change] ^= 99;
         std::fs::write(&path, changed).unwrap();

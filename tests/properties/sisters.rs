@@ -38,12 +38,12 @@ fn steps_of_a_digit_end_at_jumps() {
     let jump = load.next_breakpoint(0.29).unwrap();
     assert!(jump > 0.3 && jump < 0.3 * (1.0 + 1e-15), "{jump:e}");
     let mut contact = sphere_on(grid(), maxwell(), Settings::default());
-    let run = contact.follow(&load, Stepping::adaptive(1e-2), 1.0).stop_at(&[0.3]).unwrap();
+    let run = contact.follow(&load, Stepping::adaptive(1e-2), 1.0).stop_at([0.3]).unwrap();
     let times = to_end(run).unwrap();
     assert!(times.contains(&0.3) && times.contains(&jump) && times.last() == Some(&1.0));
     let states = ElasticStates::sphere(10.0e-3).unwrap();
     let mut contact = StatesContact::new(&states, &maxwell()).unwrap();
-    let run = contact.follow(&load, Stepping::adaptive(1e-2), 1.0).stop_at(&[0.3]).unwrap();
+    let run = contact.follow(&load, Stepping::adaptive(1e-2), 1.0).stop_at([0.3]).unwrap();
     assert!(to_end(run).unwrap().contains(&jump));
 }
 
