@@ -75,7 +75,7 @@ impl Curve {
         let inside = from..to.max(from);
         let length = if inside.len() > 1 { times[to - 1] - times[from] } else { 0.0 };
         // a window of whole periods may end before its last sample
-        let periods = frequency * length * (1.0 + 1.0 / inside.len().max(1) as f64);
+        let periods = frequency * length * (1.0 + 1.0 / inside.len().saturating_sub(1).max(1) as f64);
         within("periods in the window", periods, periods >= LEAST_PERIODS - 1e-6, ">= 2")?;
         let per_period = inside.len() as f64 / periods;
         within("points of a period in the window", per_period, per_period >= LEAST_PER_PERIOD, ">= 4")?;

@@ -56,11 +56,22 @@ pub fn table<const N: usize>(name: &str, object: &Object<'_>) -> PyResult<Vec<[f
     rows(name, values(name, object)?)
 }
 
-fn rows<const N: usize>(name: &str, (values, shape): (Vec<f64>, Vec<usize>)) -> PyResult<Vec<[f64; N]>> {
+/// Points x, y and height, NaN where none was measured.
+pub fn measured_points(name: &str, object: &Object<'_>) -> PyResult<Vec<[f64; 3]>> {
+    let points = shaped(name, values(name, object)?)?;
+    points.iter().try_for_each(|[x, y, _]| no_nan(name, &[*x, *y]))?;
+    Ok(points)
+}
+
+fn rows<const N: usize>(name: &str, array: (Vec<f64>, Vec<usize>)) -> PyResult<Vec<[f64; N]>> {
+    no_nan(name, &array.0)?;
+    shaped(name, array)
+}
+
+fn shaped<const N: usize>(name: &str, (values, shape): (Vec<f64>, Vec<usize>)) -> PyResult<Vec<[f64; N]>> {
     if shape.len() != 2 || shape[1] != N {
         return Err(PyValueError::new_err(format!("{name}: the shape (n, {N}) is needed, the array has {shape:?}")));
     }
-    no_nan(name, &values)?;
     Ok(values.as_chunks::<N>().0.to_vec())
 }
 

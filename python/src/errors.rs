@@ -85,6 +85,15 @@ pub fn unreadable(path: &Path) -> impl FnOnce(io::Error) -> PyErr {
     }
 }
 
+/// Writes a file that is complete, or leaves the one that is there as it is.
+pub fn replace(path: &Path, bytes: &[u8]) -> PyResult<()> {
+    let mut part = path.as_os_str().to_owned();
+    part.push(".part");
+    let written = std::fs::write(&part, bytes).and_then(|()| std::fs::rename(&part, path));
+    written.inspect_err(|_| drop(std::fs::remove_file(&part)))?;
+    Ok(())
+}
+
 /// The OSError of the kind that its number has, with the name of the file, as of `open`.
 fn os_error(error: &Error, text: String) -> PyErr {
     let file = match error {

@@ -4,6 +4,7 @@ use pyo3::exceptions::{PyIndexError, PyKeyError};
 use viscocontact_identify as id;
 
 use crate::curves::Curve;
+use crate::errors::replace;
 use crate::identify::{Identification, several, watched};
 use crate::pictures::Picture;
 use crate::prelude::*;
@@ -306,8 +307,9 @@ impl Fit {
 #[pyfunction]
 pub fn write_fits(py: Python<'_>, path: PathBuf, fits: Vec<Bound<'_, Fit>>) -> PyResult<()> {
     let summaries: Vec<id::Summary> = fits.iter().map(|fit| fit.get().fit.summary()).collect();
-    let file = std::fs::File::create(path)?;
-    free(py, || id::Summary::write_csv(&summaries, file)).or_raise()
+    let mut file = Vec::new();
+    free(py, || id::Summary::write_csv(&summaries, &mut file)).or_raise()?;
+    replace(&path, &file)
 }
 
 /// J over C of an incompressible body.

@@ -5,8 +5,8 @@ use std::fs::File;
 use viscocontact::TextFormat;
 use viscocontact::geometry::{self as geo, Anisotropy, Form, LengthUnit, RoughSpec, Roughness};
 
-use crate::arrays::{plane, table};
-use crate::errors::unreadable;
+use crate::arrays::{measured_points, plane};
+use crate::errors::{replace, unreadable};
 use crate::prelude::*;
 
 /// Heights of a surface on a regular grid of points, measured or computed; a `Shape`.
@@ -119,6 +119,14 @@ impl HeightMap {
         let format = if_given(format, missing_height, TextFormat::with_missing_height);
         let lengths = lengths.map(|lengths| lengths.0);
         let needs = |what: &str| PyTypeError::new_err(format!("{}: this kind of file needs {what}", path.display()));
+        let is_text = !["sdf", "sur", "pro", "x3p", "gsf", "npy"].contains(&ending.as_str());
+        for (name, given) in [("missing_height", missing_height.is_some()), ("decimal_comma", decimal_comma.is_some())]
+        {
+            if given && !is_text {
+                let what = format!("{}: this kind of file has no {name}, which is of texts", path.display());
+                return Err(PyTypeError::new_err(what));
+            }
+        }
         let map = match ending.as_str() {
             "sdf" | "sur" | "pro" | "x3p" => free(py, || geo::HeightMap::read(&path)),
             "gsf" => {
@@ -147,7 +155,7 @@ impl HeightMap {
     /// A map of points (x, y, height) [m] on a regular grid in any order: an array of shape (n, 3).
     #[staticmethod]
     fn from_points(py: Python<'_>, points: &Object<'_>) -> PyResult<Py<HeightMap>> {
-        let points: Vec<[f64; 3]> = table("points", points)?;
+        let points: Vec<[f64; 3]> = measured_points("points", points)?;
         HeightMap::made(py, free(py, || geo::HeightMap::from_points(&points)).or_raise()?)
     }
 
@@ -213,8 +221,9 @@ impl HeightMap {
     }
 
     /// The map interpolated at the cells of a grid.
-    fn resampled(&self, py: Python<'_>, grid: &Grid) -> PyResult<Py<HeightMap>> {
-        HeightMap::made(py, free(py, || self.0.resampled(&grid.0)).or_raise()?)
+    fn resampled(slf: &Bound<'_, Self>, grid: &Bound<'_, Grid>) -> PyResult<Py<HeightMap>> {
+        let onto = grid.get().0.clone();
+        HeightMap::changed(slf, "resampled", (slf.clone(), grid.clone()), |map| map.resampled(&onto))
     }
 
     /// A dict of "mean", "rms_height" [m], "skewness", "kurtosis", "rms_slope", "rms_slopes" along x1 and x2, and "rms_curvature" [1/m].
@@ -242,13 +251,14 @@ impl HeightMap {
         let kinds = [("sdf", 0), ("gsf", 1), ("npy", 2)];
         let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
         let kind = choice("ending of the path", &ending, &kinds)?;
-        let file = File::create(&path)?;
-        free(py, || match kind {
-            0 => self.0.write_sdf(file),
-            1 => self.0.write_gsf(file),
-            _ => self.0.write_npy(file),
-        })
-        .or_raise()
+        let mut file = std::io::Cursor::new(Vec::new());
+        let written = free(py, || match kind {
+            0 => self.0.write_sdf(&mut file),
+            1 => self.0.write_gsf(&mut file),
+            _ => self.0.write_npy(&mut file),
+        });
+        written.or_raise()?;
+        replace(&path, &file.into_inner())
     }
 
     /// A self-affine random surface of whole periods, of the lengths of `grid`: a periodic map.

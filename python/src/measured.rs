@@ -316,7 +316,7 @@ impl MasterCurve {
     /// The law of the shift factors themselves, a table, with the vertical factors of the curve.
     fn shift_table(&self, py: Python<'_>) -> PyResult<TimeTemperature> {
         let law = self.curve.shift_table().or_raise()?;
-        let table = self.curve.shift_factors().into_pyobject(py)?;
+        let table = self.with_reference(self.curve.shift_factors(), law.reference()).into_pyobject(py)?;
         self.with_vertical(py, &law, TimeTemperature::table(py, Value(table.into_any()), law.reference())?)
     }
 
@@ -376,6 +376,15 @@ impl MasterCurve {
         Ok(MasterCurve::by(recipe, curve))
     }
 
+    /// Rows of factors with one at the reference, where a known law may have no isotherm.
+    fn with_reference(&self, mut rows: Vec<(f64, f64)>, reference: f64) -> Vec<(f64, f64)> {
+        let k = rows.partition_point(|(temperature, _)| *temperature < reference);
+        if rows.get(k).is_none_or(|(temperature, _)| *temperature != reference) {
+            rows.insert(k, (reference, 1.0));
+        }
+        rows
+    }
+
     /// A law that was `made` anew, with the vertical factors of the `law` of the curve.
     fn with_vertical(
         &self,
@@ -389,6 +398,7 @@ impl MasterCurve {
         let row = |(temperature, _)| Ok((temperature, law.vertical_factor(temperature)?));
         let rows =
             self.curve.shift_factors().into_iter().map(row).collect::<viscocontact::Result<Vec<_>>>().or_raise()?;
+        let rows = self.with_reference(rows, law.reference());
         TimeTemperature::with_vertical_factors(Bound::new(py, made)?, Value(rows.into_pyobject(py)?))
     }
 }

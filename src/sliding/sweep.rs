@@ -111,10 +111,17 @@ impl SteadySliding {
         let told = Mutex::new((progress, 0, false));
         let chain = |k: usize| {
             let ((temperature, shift, vertical), load) = chains[k];
-            let (mut own, mut states) = (self.clone(), Vec::new());
+            let is_ended = || told.lock().unwrap_or_else(PoisonError::into_inner).2;
+            let (mut own, mut states, mut is_told) = (self.clone(), Vec::new(), false);
             for &velocity in &sweep.velocities {
+                if is_ended() {
+                    break;
+                }
                 // with moduli b times as great, the same shape takes pressures b times as great
-                let found = own.at(velocity.map(|v| v * shift), load.with_force_over(vertical))?;
+                let found = match own.at(velocity.map(|v| v * shift), load.with_force_over(vertical)) {
+                    Err(_) if is_ended() => break,
+                    found => found?,
+                };
                 let force = |force: f64| force * vertical;
                 let report = SlidingReport {
                     velocity,
@@ -124,6 +131,7 @@ impl SteadySliding {
                 };
                 let state = SweptState { temperature, load, report };
                 let (progress, done, ended) = &mut *told.lock().unwrap_or_else(PoisonError::into_inner);
+                is_told = !*ended;
                 if *ended {
                     break;
                 }
@@ -132,7 +140,8 @@ impl SteadySliding {
                 *ended = progress(&state, f64::from(*done) / count).is_break();
             }
             own.scale(load, vertical);
-            Ok::<_, Error>((own, states))
+            // the state of the table that was found last
+            Ok::<_, Error>((is_told.then_some(own), states))
         };
         let mut found: Vec<_> = chains.iter().map(|_| None).collect();
         fork(0..chains.len(), true, [&mut found[..]], &cut, &|k, [own]| {
@@ -141,7 +150,7 @@ impl SteadySliding {
         let mut table = SlidingTable::default();
         for found in found.into_iter().flatten() {
             let (last, states) = found?;
-            *self = last;
+            *self = last.unwrap_or_else(|| self.clone());
             table.0.extend(states);
         }
         Ok(table)

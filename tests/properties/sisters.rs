@@ -243,3 +243,57 @@ fn contacts_show_and_warn_of_what_is_there() {
     contact.restore(&rough).unwrap();
     assert!(warned(&mut contact));
 }
+
+/// Every reader of heights refuses what looks like a mark of missing points, and coordinates beside a matrix.
+#[test]
+fn readers_of_heights_see_what_is_none() {
+    let read = |text: &str| HeightMap::from_text(text.as_bytes(), [1.0, 1.0], LengthUnit::Metre, TextFormat::default());
+    // the first line is at the top: its coordinate is the greatest
+    for text in [
+        ",0.5,1.0,1.5\n5.0,1,2,3\n2.5,4,5,7\n",
+        ",0.5,1.0,1.5\n2.5,1,2,3\n5.0,4,5,7\n",
+        ",0.33,0.67,1.0\n5.0,1,2,3\n2.5,4,5,7\n",
+    ] {
+        assert_eq!(read(text).unwrap_err().code(), "map_not_a_matrix", "{text}");
+    }
+    // two marks, of which each is near the other
+    for marks in ["0.1 0.9 0.4\n-9999 0.3 9999\n", "0.1 0.9 0.4\n-32768 0.3 32767\n"] {
+        assert_eq!(read(marks).unwrap_err().code(), "map_stand_in", "{marks}");
+    }
+    let point = |k: usize, height: f64| [(k % 3) as f64, (k / 3) as f64, height];
+    let points: Vec<_> = (0..9).map(|k| point(k, if k == 4 { -9999.0 } else { 0.1 * k as f64 })).collect();
+    assert_eq!(HeightMap::from_points(&points).unwrap_err().code(), "map_stand_in");
+    let points: Vec<_> = (0..9).map(|k| point(k, if k == 4 { f64::NAN } else { 0.1 * k as f64 })).collect();
+    assert_eq!(HeightMap::from_points(&points).unwrap().missing(), 1);
+    let grid = Grid::new([3, 3], [1.0, 1.0]).unwrap();
+    let folder = Temporary::folder("sisters-npy");
+    let path = folder.join("map.npy");
+    viscocontact::output::write_npy(
+        &path,
+        &grid,
+        &points.iter().map(|p| if p[2].is_nan() { -9999.0 } else { p[2] }).collect::<Vec<_>>(),
+    )
+    .unwrap();
+    let file = std::fs::File::open(&path).unwrap();
+    assert_eq!(HeightMap::from_npy(file, [1.0, 1.0], LengthUnit::Metre).unwrap_err().code(), "map_stand_in");
+}
+
+/// A sweep that is ended has the states that it told of, and the contact is in the last of them.
+#[test]
+fn sweeps_end_where_they_are_told_to() {
+    use std::ops::ControlFlow;
+    use viscocontact::sliding::SlidingSweep;
+    let grid = Grid::new([64, 32], [8.0e-3, 4.0e-3]).unwrap();
+    let mut motion = builder_of(&sphere(), grid, zener()).build_sliding().unwrap();
+    let loads = [0.2, 0.3, 0.4].map(Load::force);
+    let sweep = SlidingSweep::new([[0.01, 0.0], [0.02, 0.0]], loads);
+    let mut told = 0;
+    let table = motion
+        .sweep_with(&sweep, |_, _| {
+            told += 1;
+            ControlFlow::Break(())
+        })
+        .unwrap();
+    assert_eq!((told, table.states().len()), (1, 1));
+    assert!((motion.fields().force() / table.states()[0].report.force - 1.0).abs() < 1e-9);
+}

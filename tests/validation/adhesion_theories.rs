@@ -170,3 +170,20 @@ fn an_opening_edge_needs_a_body_that_answers_and_ends() {
         assert!(matches!(refused, Some(Error::OutOfRange { .. })), "{refused:?}");
     }
 }
+
+/// A contact of no cells is the limit of small ones, whatever λ.
+#[test]
+fn points_are_the_limit_of_small_contacts() {
+    for (energy, stress) in [(0.05, 1.0e2), (0.05, 1.0e4), (0.05, 1.0e5), (1.0, 1.0e6)] {
+        let theory = MaugisDugdale::new(1.0e-3, 1.0e5, energy, stress).unwrap();
+        let ([force, approach], [near_force, near_approach]) = (theory.state(0.0), theory.state(1.0e-12));
+        assert!(
+            (force / near_force - 1.0).abs() < 1e-5 && force >= theory.pull_off()[0] * (1.0 + 1e-9),
+            "{stress:e}: {force:e} {near_force:e}"
+        );
+        assert!(
+            (approach - near_approach).abs() <= 1e-5 * near_approach.abs(),
+            "{stress:e}: {approach:e} {near_approach:e}"
+        );
+    }
+}

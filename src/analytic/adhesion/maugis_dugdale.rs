@@ -77,7 +77,10 @@ impl MaugisDugdale {
                 + 4.0 / 3.0 * parameter * parameter * a * (root * angle - n)
         };
         if a == 0.0 {
-            return [-2.0, 0.0];
+            // a → 0 at a radius c = m a of the zone: (π/4) λ c² + (4/3) (π/2 − 1) λ² c = 1
+            let (square, linear) = (0.25 * PI * parameter, 4.0 / 3.0 * (0.5 * PI - 1.0) * parameter * parameter);
+            let c = 2.0 / (linear + (linear * linear + 4.0 * square).sqrt());
+            return [-0.5 * PI * parameter * c * c, -4.0 / 3.0 * parameter * c];
         }
         let mut most = 1.0;
         while opening(most) < 1.0 {

@@ -4,6 +4,7 @@
 
 use std::io::Read;
 
+use super::text::known_heights;
 use super::{Header, Kind, Number, bytes, wrong_size};
 use super::{entry, missing, wrong_magic};
 use crate::error::Result;
@@ -52,6 +53,7 @@ impl HeightMap {
         let Ok(&[n1, n2]) = sides.as_deref() else { return Err(header.error("shape", text, "two numbers")) };
         let count = Grid::new([n1, n2], lengths)?.len();
         let stored = number.decode_all(FORMAT, data, count, true)?;
+        known_heights(&stored)?;
         let index = |i: usize, j: usize| if fortran { j * n1 + i } else { i * n2 + j };
         let heights = (0..n1).flat_map(|i| (0..n2).map(move |j| index(i, j))).map(|k| unit.to_metres(stored[k]));
         HeightMap::new([n1, n2], lengths, memory::collect("the heights of a file", count, heights)?)

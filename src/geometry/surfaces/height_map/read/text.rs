@@ -124,7 +124,7 @@ fn without_index(columns: usize, heights: Vec<f64>) -> Result<(usize, Vec<f64>)>
     let ascends = |values: &[f64]| values.len() > 1 && values.windows(2).all(|pair| pair[0] < pair[1]);
     let is_even = |values: &[f64]| {
         let step = (values[values.len() - 1] - values[0]) / (values.len() - 1) as f64;
-        values.windows(2).all(|pair| (pair[1] - pair[0] - step).abs() < 1e-2 * step)
+        values.windows(2).all(|pair| (pair[1] - pair[0] - step).abs() < 5e-2 * step.abs())
     };
     let beside: Vec<f64> = heights.iter().step_by(columns.max(1)).copied().collect();
     if columns == 2 && beside.len() > 2 && ascends(&beside) {
@@ -138,7 +138,9 @@ fn without_index(columns: usize, heights: Vec<f64>) -> Result<(usize, Vec<f64>)>
     }
     let (above, beside) = (&heights[1..columns], &beside[1..]);
     let is_index = |values: &[f64]| values.iter().enumerate().all(|(k, value)| *value == k as f64);
-    let is_axis = |values: &[f64]| ascends(values) && is_even(values);
+    // x2 descends, where the first line is at the top
+    let descends = |values: &[f64]| values.len() > 1 && values.windows(2).all(|pair| pair[0] > pair[1]);
+    let is_axis = |values: &[f64]| (ascends(values) || descends(values)) && is_even(values);
     match (is_index(above), is_index(beside)) {
         (true, true) => {}
         // half an index, or coordinates
@@ -167,31 +169,40 @@ fn is_grid(heights: &[f64]) -> bool {
 
 /// Makes NaN of heights that stand for missing ones; without a value for them, heights that look so are an error.
 pub(super) fn mask(heights: &mut [f64], missing: Option<f64>) -> Result<()> {
-    if let Some(missing) = missing {
-        let near = if missing.is_finite() { 1e-6 * missing.abs() } else { 0.0 };
-        let is_missing = |height: &f64| *height == missing || (height - missing).abs() <= near;
-        heights.iter_mut().filter(|height| is_missing(height)).for_each(|height| *height = f64::NAN);
-        return Ok(());
-    }
-    let looks_missing = |height: f64| STAND_INS.contains(&height) || height.abs() >= NO_HEIGHT;
-    let Some(&value) = heights.iter().find(|height| looks_missing(**height)) else { return Ok(()) };
-    let others = heights.iter().copied().filter(|height| *height != value && !height.is_nan());
-    let [least, most] = others.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], z| [a.min(z), b.max(z)]);
-    if least <= most && (least - value).max(value - most) <= FAR * (most - least) {
-        return Ok(());
-    }
-    let count = heights.iter().filter(|height| **height == value).count();
-    Err(stand_in(value, count))
+    let Some(missing) = missing else {
+        let remedy = |value: f64| {
+            format!(
+                ": state TextFormat::with_missing_height({value}) if nothing was measured there, or \
+                 with_missing_height(f64::NAN) if it was"
+            )
+        };
+        return without_stand_ins(heights, |height| STAND_INS.contains(&height) || height.abs() >= NO_HEIGHT, remedy);
+    };
+    let near = if missing.is_finite() { 1e-6 * missing.abs() } else { 0.0 };
+    let is_missing = |height: &f64| *height == missing || (height - missing).abs() <= near;
+    heights.iter_mut().filter(|height| is_missing(height)).for_each(|height| *height = f64::NAN);
+    Ok(())
 }
 
-/// The error of heights that look like a number for points that were not measured.
-fn stand_in(value: f64, count: usize) -> Error {
+/// Rejects heights of an array that look like a number for points that were not measured.
+pub(super) fn known_heights(heights: &[f64]) -> Result<()> {
+    let remedy = |_| ": make them NaN where nothing was measured; HeightMap::new takes heights as they are".to_owned();
+    without_stand_ins(heights, |height| STAND_INS.contains(&height), remedy)
+}
+
+fn without_stand_ins(
+    heights: &[f64],
+    looks_missing: impl Fn(f64) -> bool,
+    remedy: impl Fn(f64) -> String,
+) -> Result<()> {
+    let others = heights.iter().copied().filter(|height| !looks_missing(*height) && !height.is_nan());
+    let [least, most] = others.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], z| [a.min(z), b.max(z)]);
+    let is_near = |value: f64| least <= most && (least - value).max(value - most) <= FAR * (most - least);
+    let is_far = |height: &&f64| looks_missing(**height) && !is_near(**height);
+    let Some(&value) = heights.iter().find(is_far) else { return Ok(()) };
+    let count = heights.iter().filter(|height| **height == value).count();
     let what = format!("{count} of the heights are {value}, far from all others");
-    let remedy = format!(
-        ": state TextFormat::with_missing_height({value}) if nothing was measured there, or \
-         with_missing_height(f64::NAN) if it was"
-    );
-    Refusal::file("map_stand_in", what, &remedy).naming("height").valued(value).into()
+    Err(Refusal::file("map_stand_in", what, &remedy(value)).naming("height").valued(value).into())
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use std::io::Read;
 
-use super::text::{NO_HEIGHT, height, mask};
+use super::text::{NO_HEIGHT, height, known_heights, mask};
 use super::{First, count};
 use crate::error::{Error, Refusal, Result, least_length, positive, within};
 use crate::geometry::{HeightMap, LengthUnit};
@@ -59,6 +59,7 @@ impl HeightMap {
     /// As [`HeightMap::from_xyz`]; lines count the points from 1.
     pub fn from_points(points: &[[f64; 3]]) -> Result<HeightMap> {
         let point = |(k, &[x, y, height]): (usize, &[f64; 3])| Point { line: k as u64 + 1, at: [x, y], height };
+        known_heights(&points.iter().map(|point| point[2]).collect::<Vec<_>>())?;
         let points: Vec<Point> = points.iter().enumerate().map(point).collect();
         for (field, value) in points.iter().flat_map(|p| [("x of the points", p.at[0]), ("y of the points", p.at[1])]) {
             // a mark of missing data is no coordinate
