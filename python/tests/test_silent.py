@@ -498,3 +498,30 @@ def test_a_map_of_a_topography():
     Topography.unit = None
     with pytest.raises(ValueError, match="unit"):
         vc.HeightMap.from_topography(Topography())
+
+
+def test_maps_are_what_they_were_made_of(tmp_path):
+    """Points beside a map stay masked in a pickle, marks of missing points are told, files are whole."""
+    small = vc.HeightMap(np.arange(16.0).reshape(4, 4) * 1e-6, (1e-3, 1e-3))
+    wide = small.resampled(vc.Grid(8, 2e-3))
+    again = pickle.loads(pickle.dumps(wide))
+    assert wide.missing == again.missing > 0
+    for shape in [wide, again]:
+        vc.ViscoelasticContact(vc.Grid(8, 2e-3), shape, vc.Material(vc.Rheology.elastic(1e6)))
+    points = [[0, 0, 1e-6], [1e-3, 0, NAN], [0, 1e-3, 1e-6], [1e-3, 1e-3, 2e-6]]
+    assert vc.HeightMap.from_points(points).missing == 1
+    path = tmp_path / "map.npy"
+    np.save(path, np.array([[1, 2, 3], [4, -9999, 6]], dtype="int16"))
+    with pytest.raises(TypeError, match="missing_height"):
+        vc.HeightMap.read(path, lengths=(1e-3, 1e-3), unit="um", missing_height=-9999)
+    with pytest.raises((OSError, ValueError), match="-9999"):
+        vc.HeightMap.read(path, lengths=(2e-3, 3e-3), unit="um")
+    small.write(path)
+    assert vc.HeightMap.read(path, lengths=(1e-3, 1e-3), unit="m").missing == 0
+    assert [file.name for file in tmp_path.iterdir()] == ["map.npy"]
+
+
+def test_known_laws_have_no_isotherm_at_their_reference():
+    law = vc.TimeTemperature.wlf(10.0, 60.0, 300.0)
+    curve = vc.MasterCurve(300.0, [(310.0, CREEP(0.1)), (320.0, CREEP(0.01))], law=law)
+    assert curve.shift_table().shift_factor(300.0) == 1.0

@@ -247,7 +247,9 @@ fn contacts_show_and_warn_of_what_is_there() {
 /// Every reader of heights refuses what looks like a mark of missing points, and coordinates beside a matrix.
 #[test]
 fn readers_of_heights_see_what_is_none() {
-    let read = |text: &str| HeightMap::from_text(text.as_bytes(), [1.0, 1.0], LengthUnit::Metre, TextFormat::default());
+    let read = |text: &str| {
+        HeightMap::from_text(text.as_bytes(), [1.0, 1.0], LengthUnit::Metre, viscocontact::TextFormat::default())
+    };
     // the first line is at the top: its coordinate is the greatest
     for text in [
         ",0.5,1.0,1.5\n5.0,1,2,3\n2.5,4,5,7\n",
