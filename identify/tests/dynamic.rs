@@ -115,5 +115,7 @@ fn windows_that_cannot_work_are_refused() -> Result<()> {
             other => panic!("{expected}: {other:?}"),
         }
     }
+    // two periods, to the sample
+    curve.complex_modulus(5.0, 4.0..4.4, 0.0)?;
     Ok(())
 }
