@@ -136,16 +136,10 @@ impl<'a> Fields<'a> {
     /// If `out` does not hold one value per cell, or there is no memory for the displacement on the whole grid, where
     /// only a region is computed.
     pub fn gap_into(&self, out: &mut [f64]) -> Result<()> {
-        let (Ground { grid, kernel, .. }, Held { region, indenter, current, .. }) = (self.ground, self.held);
+        let (Ground { grid, kernel, .. }, Held { region, .. }) = (self.ground, self.held);
         exact_length("gap", out.len(), region.shown_len())?;
-        let initial = indenter.gap();
-        let gap = |k: usize, u: f64, center: [f64; 2]| {
-            let RigidMotion { approach, tilt } = current.motions[initial.owner(k)];
-            let lowered = RigidMotion { approach: approach - initial.datum, tilt };
-            initial.above[k] + u - lowered.at(center)
-        };
         if region.is_shared() {
-            let own = self.surface.own.iter().enumerate().map(|(k, &u)| gap(k, u, region.center(k)));
+            let own = (0..region.len()).map(|k| self.gap_of(k));
             region.show(&own.collect::<Vec<_>>(), out);
             return Ok(());
         }
@@ -157,9 +151,23 @@ impl<'a> Fields<'a> {
         }
         let n2 = grid.cells()[1];
         for (k, (h, &u)) in out.iter_mut().zip(self.displacement()).enumerate() {
-            *h = gap(k, u, grid.center(k / n2, k % n2));
+            *h = self.gap_under(k, u, grid.center(k / n2, k % n2));
         }
         Ok(())
+    }
+
+    /// The gap at a cell of the region that is computed.
+    pub(crate) fn gap_of(&self, k: usize) -> f64 {
+        let Held { region, indenter, .. } = self.held;
+        self.gap_under(indenter.index(self.grid(), region, k), self.surface.own[k], region.center(k))
+    }
+
+    /// The gap above a displacement `u` at an index of the initial gap, whose cell has this centre.
+    fn gap_under(&self, at: usize, u: f64, center: [f64; 2]) -> f64 {
+        let Held { indenter, current, .. } = self.held;
+        let initial = indenter.gap();
+        let RigidMotion { approach, tilt } = current.motions[initial.owner(at)];
+        initial.above[at] + u - RigidMotion { approach: approach - initial.datum, tilt }.at(center)
     }
 
     /// Whether the bodies are apart: no cell is in contact, and where surfaces attract each other

@@ -10,8 +10,8 @@ use crate::parallel::Rows;
 
 /// Rows that are looked at together.
 const PIECE: usize = 64;
-/// In place of a pressure where there is nothing to touch.
-const NOTHING: f64 = -1.0;
+/// In place of a pressure where there is nothing to touch: where bodies are apart it is −h.
+const NOTHING: f64 = f64::NEG_INFINITY;
 
 impl Fields<'_> {
     /// The contact area \[m²\]: each rank finds the covered part of its rows of squares, and the parts of all ranks
@@ -26,24 +26,24 @@ impl Fields<'_> {
             let beyond = usize::from(rows.end == n1 && !rows.is_empty());
             rows.start..rows.end + beyond
         };
-        let (mut covered, mut pressure, mut gap) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut covered, mut marked, mut pressure) = (Vec::new(), Vec::new(), Vec::new());
         for half in self.with_images(region.computed_rows()) {
             for start in half.clone().step_by(PIECE) {
                 let piece = start..(start + PIECE).min(half.end);
                 let first = start as isize - 1 - REACH as isize;
                 let near = first..piece.end as isize + 1 + REACH as isize;
-                pressure.clear();
-                pressure.resize(near.len() * n2, NOTHING);
-                for (row, out) in near.zip(pressure.chunks_exact_mut(n2)) {
+                marked.clear();
+                marked.resize(near.len() * n2, NOTHING);
+                for (row, out) in near.zip(marked.chunks_exact_mut(n2)) {
                     match self.computed_row(row) {
                         Some(row) if region.computed_rows().contains(&row) => self.marked_row(row, out),
                         Some(row) => beside.get(&row).into_iter().for_each(|row| out.copy_from_slice(row)),
                         None => {}
                     }
                 }
-                gap.clear();
-                gap.extend(pressure.iter().map(|&p| if p == NOTHING { f64::INFINITY } else { 0.0 }));
-                pressure.iter_mut().for_each(|p| *p = p.max(0.0));
+                pressure.clear();
+                pressure.extend(marked.iter().map(|p| p.max(0.0)));
+                let gap = |k: usize| -marked[k];
                 let (periodic, first) = (self.ground.kernel.periodic_axes(), Some(first));
                 let pressed =
                     PressedCells { grid: self.grid(), first, periodic, pressure: &pressure, gap: &gap, extent };
@@ -63,16 +63,16 @@ impl Fields<'_> {
         Some(if folded && row < n1 / 2 { n1 - 1 - row } else { row })
     }
 
-    /// The pressure of an own row, marked where there is nothing to touch.
+    /// The pressure of an own row, marked where there is none.
     fn marked_row(&self, row: usize, out: &mut [f64]) {
-        let Held { region, indenter, .. } = self.held;
+        let region = &self.held.region;
         let (row, [_, m2], n2) = (row - region.computed_rows().start, region.cells(), out.len());
         out.copy_from_slice(&self.pressure()[row * n2..(row + 1) * n2]);
-        for (j, h) in indenter.gap().above[row * m2..(row + 1) * m2].iter().enumerate() {
-            if h.is_infinite() {
-                // of a folded axis the first half are images
-                out[n2 - m2 + j] = NOTHING;
-                out[if region.folded()[1] { m2 - 1 - j } else { j }] = NOTHING;
+        for j in 0..m2 {
+            // of a folded axis the first half are images
+            let both = [n2 - m2 + j, if region.folded()[1] { m2 - 1 - j } else { j }];
+            if out[both[0]] <= 0.0 {
+                both.into_iter().for_each(|column| out[column] = -self.gap_of(row * m2 + j));
             }
         }
     }

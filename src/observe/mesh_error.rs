@@ -205,7 +205,7 @@ fn mesh_error(fields: Fields<'_>) -> Result<Option<MeshError>> {
 /// Σ |p − p′| / Σ p′ over the cells of the coarser mesh, each about every other fine one: p′ are means over it.
 fn difference(coarse: &Coarse, fine: &[f64], grid: &Grid, periodic: [bool; 2]) -> f64 {
     let [n1, n2] = grid.cells();
-    let fine = PressedCells { grid, first: None, periodic, pressure: fine, gap: &[], extent: None };
+    let fine = PressedCells { grid, first: None, periodic, pressure: fine, gap: &|_| 0.0, extent: None };
     // beside every other cell, of which a coarse one holds half; along a line there are no others
     let beside = |n: usize, k: usize| {
         let k = k as isize;

@@ -7,6 +7,7 @@
 //! added until that is a small part of what was asked.
 
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 use super::does_not_superpose;
 use crate::contact::ViscoelasticContact;
@@ -86,6 +87,7 @@ impl FieldsByLevels {
         course: &Loading<'_>,
         accuracy: f64,
         (interpolant, start): (Interpolant, f64),
+        cancelled: Option<&Arc<AtomicBool>>,
     ) -> Result<Option<FieldsByLevels>> {
         let all = sampled(course.history, [start, course.until])?;
         let tilt = all[0].tilt();
@@ -98,23 +100,24 @@ impl FieldsByLevels {
         // errors of two contacts count in their difference as many times as the bodies creep
         let creep = course.softest_compliance()? / course.material.contact_compliance(0.0);
         let tolerance = (BESIDE.of_solver * accuracy / creep.max(1.0)).max(1e-9);
-        let mut elastic = contact.elastic(1.0, tolerance)?;
-        elastic.solve(Load::Force { normal: 0.0, tilt })?;
-        let rest = elastic.fields().approach();
+        let mut contacts = Contacts::new(contact.elastic(1.0, tolerance)?, tilt, tolerance);
+        contacts.cancelled = cancelled.cloned();
+        contacts.solve_under(Load::Force { normal: 0.0, tilt })?;
+        let rest = contacts.elastic.fields().approach();
         let mut top = 0.0_f64;
         if by_force {
             let origin = course.undisturbed(&states_of(tilt)?, interpolant, start)?;
             top = MARGIN * GradedRun::new(origin, course.history, course.until, (by_force, accuracy))?.1;
         } else {
             for load in greatest(&all, course.softest_compliance()?) {
-                elastic.solve(load)?;
-                top = top.max(MARGIN * elastic.fields().force());
+                contacts.solve_under(load)?;
+                top = top.max(MARGIN * contacts.elastic.fields().force());
             }
         }
         if top == 0.0 {
             return Ok(None);
         }
-        let mut curve = SolvedCurve::new(Contacts::new(elastic, tilt, tolerance), by_force, rest);
+        let mut curve = SolvedCurve::new(contacts, by_force, rest);
         let mut below: Option<SolvedContact> = None;
         for k in (0..BESIDE.first_levels).rev() {
             let next = curve.contacts.solve(top * BESIDE.ratio.powi(-k))?;

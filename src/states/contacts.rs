@@ -6,6 +6,7 @@ use std::sync::atomic::AtomicBool;
 
 use crate::elastic::ElasticContact;
 use crate::error::Result;
+use crate::fields::report::StepReport;
 use crate::load::{Load, Tilt};
 use crate::solver::RigidMotion;
 use crate::states::pressed::{Pressed, allowed_fall};
@@ -64,15 +65,19 @@ impl Contacts {
         if let Some(kept) = self.kept.iter().find(|kept| kept.level == level) {
             return Ok(kept.clone());
         }
-        let load = Load::Force { normal: level, tilt: self.tilt };
-        let report = match &self.cancelled {
-            Some(flag) => self.elastic.solve_unless(flag, load)?,
-            None => self.elastic.solve(load)?,
-        };
+        let report = self.solve_under(Load::Force { normal: level, tilt: self.tilt })?;
         self.spent = [self.spent[0] + 1, self.spent[1] + report.convolutions];
         let fields = self.elastic.fields();
         let (motion, area) = (fields.motion(0), fields.contact_area());
         Ok(SolvedContact { level, motion, area, pressure: Pressed::new(fields.pressure()) })
+    }
+
+    /// Solves the elastic contact under a load.
+    pub(super) fn solve_under(&mut self, load: Load) -> Result<StepReport> {
+        match &self.cancelled {
+            Some(flag) => self.elastic.solve_unless(flag, load),
+            None => self.elastic.solve(load),
+        }
     }
 
     /// Solves an elastic contact and keeps it.

@@ -101,14 +101,15 @@ impl<'a> Run<'a, StatesContact> {
 
 impl FieldFinder<ViscoelasticContact> for InSpace {
     fn prepare(&mut self, contact: &ViscoelasticContact, request: &FieldRequest<'_>) -> Result<Prepared> {
-        let FieldRequest { history, accuracy, start, until, times, is_adaptive } = *request;
+        let FieldRequest { history, accuracy, start, until, times, is_adaptive, cancelled } = *request;
         let Scene { ground: Ground { settings, attraction, .. }, material, temperature, .. } = &*contact.scene;
         let course = Loading { material, temperature: temperature.as_ref(), history, until };
         let state = &contact.computation.state;
         let is_alone = contact.fields().bodies() == 1 && attraction.is_none() && !state.held.region.is_shared();
         let is_new = start == 0.0 || state.is_undisturbed();
         let kind = (settings.adaptive_interpolant(), start);
-        let beside = (is_alone && is_new).then(|| FieldsByLevels::new(contact, &course, accuracy, kind)).transpose();
+        let new = || FieldsByLevels::new(contact, &course, accuracy, kind, cancelled);
+        let beside = (is_alone && is_new).then(new).transpose();
         if let Some(beside) = none_if_not_covered(beside)?.flatten() {
             *self = InSpace::FieldsByLevels(Mutex::new(Box::new(beside)));
             return Ok(Prepared { stops: Vec::new(), tolerance: f64::INFINITY });

@@ -215,7 +215,7 @@ fn tilting(seed: u64, number: u64) -> Scene {
     Scene { name, shape, geometry, other: None, material, history, until, by_force, accuracy, area, aside, ratio }
 }
 
-/// Approach (force where the approach is given) and contact radius √(area/π); `None` where they are not known.
+/// Approach (force where the approach is given) and contact area; `None` where they are not known.
 type State = [Option<f64>; 2];
 /// The state at each time, and the greatest pressure of the run.
 type Truth = (Vec<State>, Option<f64>);
@@ -259,7 +259,7 @@ fn of_states(scene: &Scene, shape: Shape, times: &[f64]) -> Truth {
             let main = if scene.by_force { approaches * contact.approach() } else { contact.force() };
             // under a given approach bodies part at a time that no study tells
             let grows = scene.by_force && !punch;
-            states.push([Some(main), grows.then_some(radii * edge)]);
+            states.push([Some(main), grows.then_some(PI * (radii * edge).powi(2))]);
         }
         if !punch {
             let pressure = |k: f64| {
@@ -291,7 +291,7 @@ fn of_finer_run(scene: &Scene, study: &StudyResult, times: &[f64]) -> Result<Tru
         states.pop_if(|(time, _)| *time == report.time);
         let contact = run.contact();
         let main = if scene.by_force { contact.approach() } else { contact.force() };
-        states.push((report.time, [Some(main), Some((contact.contact_area() / PI).sqrt())]));
+        states.push((report.time, [Some(main), Some(contact.contact_area())]));
         highest = highest.max(contact.fields().max_pressure());
     }
     states.retain(|(time, _)| times.contains(time));
@@ -333,7 +333,7 @@ fn outcome(scene: &Scene, cells: usize) -> Result<Outcome, Error> {
     let [values, areas] = [main, "contact area"].map(|name| result.values(name).unwrap());
     for ((&time, &main), &area) in result.times().iter().zip(values).zip(areas) {
         states.pop_if(|(last, _)| *last == time);
-        states.push((time, [main, (area / PI).sqrt()]));
+        states.push((time, [main, area]));
     }
     let (times, states): (Vec<f64>, Vec<_>) = states.into_iter().unzip();
     let (truth, peak) = match scene.shape {
@@ -348,8 +348,7 @@ fn outcome(scene: &Scene, cells: usize) -> Result<Outcome, Error> {
     };
     let found = result.values("maximum pressure").unwrap()[0];
     let pressure = peak.map(|peak| (found / peak - 1.0).abs());
-    // the area errs by twice the radius
-    let errors = [error(0), error(1).map(|radius| 2.0 * radius), pressure];
+    let errors = [error(0), error(1), pressure];
     let told = [main, "contact area", "maximum pressure"].map(|name| result.measured(name).unwrap().error());
     Ok(Outcome { errors, told, result })
 }

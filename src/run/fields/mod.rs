@@ -22,6 +22,8 @@ pub struct FieldRequest<'a> {
     pub times: &'a [f64],
     /// Whether the run chooses its steps by their error.
     pub is_adaptive: bool,
+    /// Set by another thread to end what is found before the first step.
+    pub cancelled: Option<&'a Arc<AtomicBool>>,
 }
 
 /// Times at which steps end for fields, and the tolerance of adaptive steps.

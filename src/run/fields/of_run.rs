@@ -31,7 +31,8 @@ impl<'a, C: Contact> Run<'a, C> {
         let history = self.histories.first();
         let (start, until) = (self.progress.start, self.until);
         let is_adaptive = matches!(self.stepping, Stepping::Adaptive { .. });
-        let request = FieldRequest { history, accuracy: fields.accuracy, start, until, times: &times, is_adaptive };
+        let (accuracy, cancelled) = (fields.accuracy, self.cancelled.as_ref());
+        let request = FieldRequest { history, accuracy, start, until, times: &times, is_adaptive, cancelled };
         let Prepared { stops, tolerance } = fields.finder.prepare(&self.contact, &request)?;
         self.control.tighten(tolerance);
         fields.is_prepared = true;

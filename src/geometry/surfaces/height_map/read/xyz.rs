@@ -1,5 +1,6 @@
 //! Triplets of coordinates and height in text files.
 
+use std::collections::BTreeSet;
 use std::io::Read;
 
 use super::text::{NO_HEIGHT, height, known_heights, mask};
@@ -206,8 +207,8 @@ struct RegularAxis {
 
 /// Determines the regular positions along one axis of the points.
 ///
-/// Coordinates that differ by a small fraction of the spacing are the same. The smallest step between different ones
-/// approximates the spacing; a straight line through all of them makes it accurate.
+/// Coordinates that differ by a small fraction of the spacing are the same, and rows or columns may be absent. So the
+/// spacing is near a step that is large beside the next smaller one: the first such step on whose grid the points lie.
 fn axis(points: &[Point], name: &'static str, axis: usize) -> Result<RegularAxis> {
     let field = if axis == 0 { "different x of the points" } else { "different y of the points" };
     let mut order: Vec<usize> = (0..points.len()).collect();
@@ -215,19 +216,31 @@ fn axis(points: &[Point], name: &'static str, axis: usize) -> Result<RegularAxis
     let value = |k: usize| points[order[k]].at[axis];
     let mut steps: Vec<f64> = (1..order.len()).map(|k| value(k) - value(k - 1)).filter(|step| *step > 0.0).collect();
     steps.sort_by(|a, b| b.total_cmp(a));
-    let Some(&greatest) = steps.first() else {
-        // no points, or all at the same coordinate
-        return Err(least_length(field, order.len().min(1), 2).err().unwrap_or(sparse(points.len(), [1, 1])));
+    // the smaller one is rounding, or the spacing, and the larger one a gap
+    let small = |pair: &&[f64]| pair[1] < SAME_POSITION * pair[0];
+    let large = steps.windows(2).filter(small).map(|pair| pair[0]).chain(steps.last().copied());
+    let mut on_grids = large.map(|step| on_axis(points, &order, (name, axis), step));
+    // a point off its grid by less than that lies on a much finer one
+    let is_dense = |found: &RegularAxis| {
+        found.cells.div_ceil(MAX_CELLS_PER_POINT) <= found.indices.iter().collect::<BTreeSet<_>>().len()
     };
-    // in decreasing order, the last step before the first that is a small fraction of its predecessor
-    let smallest = steps.iter().try_fold(greatest, |a, &b| if b < SAME_POSITION * a { Err(a) } else { Ok(b) });
-    let smallest = positive("step between the points", smallest.unwrap_or_else(|last| last))?;
+    match on_grids.next() {
+        // no points, or all at the same coordinate
+        None => Err(least_length(field, order.len().min(1), 2).err().unwrap_or(sparse(points.len(), [1, 1]))),
+        Some(first) => first.or_else(|error| on_grids.flatten().find(is_dense).ok_or(error)),
+    }
+}
 
+/// The regular positions of points in the `order` along an axis, of which `step` approximates the spacing; a straight
+/// line through all points makes it accurate.
+fn on_axis(points: &[Point], order: &[usize], (name, axis): (&'static str, usize), step: f64) -> Result<RegularAxis> {
+    let step = positive("step between the points", step)?;
+    let value = |k: usize| points[order[k]].at[axis];
     let mut positions = Vec::with_capacity(order.len());
     let mut position = 0.0;
     for k in 0..order.len() {
-        if k > 0 && value(k) - value(k - 1) >= SAME_POSITION * smallest {
-            position += ((value(k) - value(k - 1)) / smallest).round();
+        if k > 0 && value(k) - value(k - 1) >= SAME_POSITION * step {
+            position += ((value(k) - value(k - 1)) / step).round();
         }
         positions.push(position);
     }
@@ -314,6 +327,10 @@ mod tests {
         assert_eq!((line.cells, line.missing), ([4, 1], 1));
         let uneven = profile("0.01 1\n0.1 2\n1 3\n10 4\n").unwrap_err();
         assert!(uneven.code() == "map_sparse" && uneven.to_string().starts_with("4 points"), "{uneven}");
+        // a gap of 120 spacings, in two files merged
+        let merged: String = (0..300).filter(|k| !(100..219).contains(k)).map(|k| format!("{k} 1\n")).collect();
+        let merged = profile(&merged).unwrap();
+        assert_eq!((merged.cells, merged.missing), ([300, 1], 119));
         let twice = profile("0 1\n0.5 2\n1 3\n0.5 4\n").unwrap_err();
         assert!(twice.to_string().starts_with("lines 2 and 4 give two heights"), "{twice}");
     }
@@ -354,7 +371,7 @@ mod tests {
         assert!(read(square).is_ok());
         let duplicate = read(&format!("{square}1.0002 0 7\n")).unwrap_err();
         assert!(duplicate.to_string().starts_with("lines 2 and 6 give two heights"), "{duplicate}");
-        for (stray, name) in [("2.01 1 6", "x"), ("2.3 1 6", "x"), ("2 1.4 6", "y")] {
+        for (stray, name) in [("2.01 1 6", "x"), ("2.005 1 6", "x"), ("2.3 1 6", "x"), ("2 1.4 6", "y")] {
             let error = read(&format!("{square}{stray}\n")).unwrap_err();
             assert!(error.is("map_off_grid", name), "{error}");
         }
