@@ -161,14 +161,16 @@ impl Fields<'_> {
         if self.contact_cells() == 0 {
             return 0.0;
         }
+        // no pressure is above the maximum, not even where the contact is a cell wide
+        let least = self.force() / self.max_pressure();
         if region.is_shared() {
-            return self.shared_area();
+            return self.shared_area().max(least);
         }
         let (grid, n2) = (self.grid(), self.grid().cells()[1]);
         let gap = |k: usize| region.find([k / n2, k % n2]).map_or(0.0, |own| self.gap_of(own));
         let periodic = self.kernel().periodic_axes();
         let (pressure, extent) = (self.pressure(), self.extent_of_contact());
-        PressedCells { grid, first: None, periodic, pressure, gap: &gap, extent }.area()
+        PressedCells { grid, first: None, periodic, pressure, gap: &gap, extent }.area().max(least)
     }
 
     /// Mean pressure over the contact \[Pa\]: force over [`contact_area`](Fields::contact_area); 0 without
