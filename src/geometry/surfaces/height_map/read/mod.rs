@@ -8,6 +8,7 @@ mod header;
 #[cfg(feature = "npy")]
 pub(super) mod npy;
 mod number;
+mod regular_axis;
 mod sdf;
 mod sur;
 #[cfg(test)]
