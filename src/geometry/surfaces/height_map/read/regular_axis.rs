@@ -5,8 +5,6 @@ use std::collections::BTreeSet;
 use crate::error::{Error, Refusal, Result, least_length, positive};
 use crate::rounded::rounded;
 
-/// Maximum number of grid points per point of the file.
-pub(super) const MAX_CELLS_PER_POINT: usize = 100;
 /// Maximum distance of a point from the regular grid, in spacings.
 const MAX_OFFSET: f64 = 1e-3;
 /// Coordinates closer than this fraction of the spacing are the same.
@@ -48,10 +46,8 @@ pub(super) fn axis(points: &[Point], name: &'static str, axis: usize) -> Result<
     let small = |pair: &&[f64]| pair[1] < SAME_POSITION * pair[0];
     let large = steps.windows(2).filter(small).map(|pair| pair[0]).chain(steps.last().copied());
     let mut on_grids = large.map(|step| on_axis(points, &order, (name, axis), step));
-    // a point off its grid by less than that lies on a much finer one
-    let is_dense = |found: &RegularAxis| {
-        found.cells.div_ceil(MAX_CELLS_PER_POINT) <= found.indices.iter().collect::<BTreeSet<_>>().len()
-    };
+    // any points lie on a fine enough grid, on which they are sparse
+    let is_dense = |found: &RegularAxis| found.cells <= 2 * found.indices.iter().collect::<BTreeSet<_>>().len();
     match on_grids.next() {
         // no points, or all at the same coordinate
         None => Err(least_length(field, order.len().min(1), 2).err().unwrap_or(sparse(points.len(), [1, 1]))),

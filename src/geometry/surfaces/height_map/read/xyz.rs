@@ -2,7 +2,7 @@
 
 use std::io::Read;
 
-use super::regular_axis::{MAX_CELLS_PER_POINT, Point, RegularAxis, axis, sparse};
+use super::regular_axis::{Point, RegularAxis, axis, sparse};
 use super::text::{NO_HEIGHT, height, known_heights, mask};
 use super::{First, count};
 use crate::error::{Refusal, Result, within};
@@ -11,7 +11,8 @@ use crate::input::{Quantity, TableRow, TakenColumn, TextFormat, TextTable, UnitO
 use crate::memory;
 use crate::rounded::rounded;
 
-/// Maximum number of grid points per point of a profile.
+/// Maximum number of grid points per point of the file, and of a profile.
+const MAX_CELLS_PER_POINT: usize = 100;
 const MAX_CELLS_PER_POINT_OF_PROFILE: usize = 2;
 
 impl HeightMap {
