@@ -50,7 +50,7 @@ const LONG: Duration = Duration::from_millis(10);
 /// >>> for _ in range(10):
 /// ...     report = contact.step(0.2, Load.force(1.0))      # hold it
 /// >>> f"{report.time:.1f} s {contact.contact_area * 1e6:.2f} mm²"
-/// '2.0 s 10.03 mm²'
+/// '2.0 s 9.94 mm²'
 /// >>> contact.pressure.shape
 /// (64, 64)
 #[pyclass(module = "viscocontact")]
