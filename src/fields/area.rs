@@ -107,8 +107,9 @@ impl PressedCells<'_> {
     }
 
     /// Distance of the end of contact from the centre of a cell in contact towards its neighbour out of contact, in
-    /// cells: the line through h^⅔ of this neighbour and the next one is zero there, but for [`BEYOND`]. Where the gap does not rise, as in
-    /// a channel between two contacts, it is the line through p² of the last two cells in contact.
+    /// cells: [`BEYOND`] where the line through h^⅔ of this neighbour and the next one is zero. Where the gap does not
+    /// rise, as in a channel between two contacts, it is where the line through p² of the last two cells in contact is
+    /// zero.
     fn distance_to_end(&self, from: [isize; 2], to: [isize; 2]) -> f64 {
         let on = |cell: [isize; 2], k: isize| [0, 1].map(|axis| cell[axis] + k * (to[axis] - from[axis]));
         let [near, next] = [on(to, 0), on(to, 1)].map(|cell| self.gap_at(cell).max(0.0).cbrt().powi(2));
