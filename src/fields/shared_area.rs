@@ -72,7 +72,7 @@ impl Fields<'_> {
             // of a folded axis the first half are images
             let both = [n2 - m2 + j, if region.folded()[1] { m2 - 1 - j } else { j }];
             if out[both[0]] <= 0.0 {
-                both.into_iter().for_each(|column| out[column] = -self.gap_of(row * m2 + j));
+                both.into_iter().for_each(|column| out[column] = -self.gap_of(row * m2 + j).max(0.0));
             }
         }
     }
