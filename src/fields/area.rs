@@ -152,7 +152,9 @@ impl Fields<'_> {
     /// Beside a smooth contact the gap h rises with the power 3/2 of the distance from the edge (K. L. Johnson, Contact
     /// Mechanics, 1985, section 5.1), however the bodies were loaded before, so that h^⅔ of two cells extrapolates to
     /// the edge within a fraction of a cell. The area is that of the polygons through these points. Where the indenter
-    /// has no surface beyond the edge, as at the rim of a punch, the contact ends with the cell. Measured on spheres,
+    /// has no surface beyond the edge, as at the rim of a punch, the contact ends with the cell. At a sharp rim
+    /// above a finite flank the gap rises linearly, and the area is too small by half a cell of radius or less; between
+    /// `set_geometries` and the next step the new gap is read over the old displacement. Measured on spheres,
     /// elastic or creeping: 3e-3 of the area at 64² cells and 5e-4 at 256², where counted cells
     /// ([`Fields::contact_cells`]) are off by 1.5e-2 and 3e-3. Where surfaces [attract](crate::adhesion) each other,
     /// contact is where the wall presses; the error is 0.35 % with 6 cells in the zone of the attraction, and 0.05 %
